@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eyeslam/baselines/method.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <functional>
+#include <stdexcept>
+#include <utility>
+
+#include "eyeslam/baselines/eyeslam_method.h"
+
+namespace eyeslam::baselines {
+namespace {
+
+using tracking::TrackerOptions;
+using Maker = std::function<std::unique_ptr<Method>(TrackerOptions, std::uint64_t seed)>;
+
+// A new rival is a line here. The order is that of `--help`; the first is the default.
+const std::vector<std::pair<std::string, Maker>>& makers()
+{
+  static const std::vector<std::pair<std::string, Maker>> kMakers = {
+      {"eyeslam", [](TrackerOptions options, std::uint64_t) { return std::make_unique<EyeSlamMethod>(options); }},
+  };
+  return kMakers;
+}
+
+}  // namespace
+
+std::vector<std::string> methodNames()
+{
+  std::vector<std::string> names;
+  for (const auto& [name, make] : makers()) names.push_back(name);
+  return names;
+}
+
+std::unique_ptr<Method> makeMethod(const std::string& name, const TrackerOptions& options, std::uint64_t seed)
+{
+  for (const auto& [known, make] : makers()) {
+    if (known == name) return make(options, seed);
+  }
+  throw std::invalid_argument(fmt::format("method '{}' is unknown; one of: {}", name, fmt::join(methodNames(), ", ")));
+}
+
+}  // namespace eyeslam::baselines
