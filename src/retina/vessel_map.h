@@ -8,8 +8,8 @@
 namespace eyeslam::retina {
 
 /// The published vessel map as a value: what tracking hands to guidance, files and messages (contracts, section 3).
-/// Row-major grids of `width` x `height` cells. The centre of cell (0, 0) lies at (origin_x, origin_y) in the map frame,
-/// full-resolution px; neighbouring cells are `px_per_cell` full-resolution px apart.
+/// Row-major grids of `width` x `height` cells. The centre of cell (0, 0) lies at (origin_x, origin_y) in the map
+/// frame, full-resolution px; neighbouring cells are `px_per_cell` full-resolution px apart.
 struct VesselMap {
   int width = 0;
   int height = 0;
@@ -31,7 +31,7 @@ struct VesselMap {
 
 /// A map point of the paper's list M: the cells at or above the threshold.
 struct MapPoint {
-  double x_px = 0.0;         ///< map frame, full-resolution px
+  double x_px = 0.0;  ///< map frame, full-resolution px
   double y_px = 0.0;
   double probability = 0.0;  ///< [0, 1]
   double calibre_px = 0.0;

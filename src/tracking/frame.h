@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "eyeslam/retina/options.h"
 #include "eyeslam/retina/reason.h"
@@ -42,25 +43,27 @@ class Frame {
   explicit Frame(const FrameOptions& options = {});
 
   /// Takes an image, 8 or 16 bit, one (grey) or three channels (BGR); keeps no reference.
-  /// @return none, or wrong_size when empty, of another type, or not like the first one
+  /// @return none, or wrong_size when empty, of another type, under 32 processed px, or not like the first one
   retina::Reason assign(const cv::Mat& image);
 
   /// Fills `contrast()`: the background is the masked mean around each cell (tracker study, 2.4).
   void normalise(const OcclusionMask& mask);
 
-  bool isGrey() const { return grey_; }
+  bool isGrey() const { return channels_ == 1; }
   int width() const { return green_.cols; }
   int height() const { return green_.rows; }
   /// Image centre, frame px.
   Eigen::Vector2d centre() const { return {(width() - 1) / 2.0, (height() - 1) / 2.0}; }
   /// Full px per frame px, in x and y.
   Eigen::Vector2d pixelSize() const { return pixel_size_; }
+  /// Where the centre of the frame lies in the image as it came, full px.
+  Eigen::Vector2d centreInImage() const;
   /// Size of the image as it came, full px.
   cv::Size fullSize() const { return full_size_; }
 
   /// Green (or grey), ten bits (0 to 1020), `height` x `width`.
   const cv::Mat_<std::uint16_t>& green() const { return green_; }
-  /// Means over cells: green 0 to 1020, red and blue 0 to 255. Of a grey image, red = blue = grey.
+  /// Means over cells: green 0 to 1020, red and blue (sampled) 0 to 255. Of a grey image, red = blue = grey.
   const cv::Mat_<std::uint16_t>& cellGreen() const { return cell_green_; }
   const cv::Mat_<std::uint8_t>& cellRed() const { return cell_red_; }
   const cv::Mat_<std::uint8_t>& cellBlue() const { return cell_blue_; }
@@ -69,23 +72,24 @@ class Frame {
 
  private:
   void allocate(const cv::Mat& image);
-  void shrinkByHalf(const cv::Mat& image);
-  void shrinkByArea(const cv::Mat& image);
-  void averageCells();
+  void shrink(const cv::Mat& image);
+  void averageCells(const cv::Mat& image);
+  void estimateBackground(const OcclusionMask& mask);
 
   FrameOptions options_;
-  bool grey_ = false;
   int type_ = -1;
-  double to_ten_bits_ = 1.0;  // times a grey level of the image: 0 to 1020
+  int channels_ = 0;
+  double to_ten_bits_ = 1.0;    // times a grey level of the image: 0 to 1020
+  double to_eight_bits_ = 1.0;  // times a grey level of the image: 0 to 255
   cv::Size full_size_;
   Eigen::Vector2d pixel_size_ = {1.0, 1.0};
-  cv::Mat_<std::uint16_t> green_;
-  cv::Mat_<std::uint8_t> red_, blue_;  // sampled, one row and column in two
-  cv::Mat_<std::uint16_t> cell_green_;
+  cv::Mat_<std::uint16_t> green_, cell_green_;
   cv::Mat_<std::uint8_t> cell_red_, cell_blue_;
-  cv::Mat_<std::int16_t> contrast_, rough_;
-  cv::Mat_<float> background_, weight_, sum_;
-  cv::Mat shrunk_;
+  cv::Mat_<std::int16_t> contrast_;
+  cv::Mat_<float> weight_, weighted_, inverse_background_, box_;
+  std::vector<float> row_gain_;
+  std::vector<std::int16_t> rows_;  // three rows of unsmoothed contrast
+  cv::Mat channel_, wide_;          // for scales other than one half
 };
 
 }  // namespace eyeslam::tracking

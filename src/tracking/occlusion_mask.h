@@ -59,7 +59,7 @@ class OcclusionMask {
   int height_ = 0;
   int median_red_ = 0;
   double visible_fraction_ = 0.0;
-  cv::Mat_<std::uint8_t> cells_, bright_, rim_, grown_;
+  cv::Mat_<std::uint8_t> cells_, bright_, rough_, scratch_;
 };
 
 }  // namespace eyeslam::tracking

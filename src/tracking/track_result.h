@@ -13,11 +13,11 @@ namespace eyeslam::tracking {
 struct TrackResult {
   std::int64_t frame = -1;  ///< number of the frame, from 0
   bool tracked = false;
-  retina::Reason reason = retina::Reason::none;  ///< why not tracked
-  retina::Pose2 map_T_frame;                     ///< L_t; the last good one when not tracked
+  retina::Reason reason = retina::Reason::none;          ///< why not tracked
+  retina::Pose2 map_T_frame;                             ///< L_t; the last good one when not tracked
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of (x, y, theta): px^2, px rad, rad^2
-  int points = 0;      ///< vessel points used for matching
-  double score = 0.0;  ///< mean cell value of the match, [0, 1]
+  int points = 0;                                        ///< vessel points used for matching
+  double score = 0.0;                                    ///< mean cell value of the match, [0, 1]
 };
 
 /// Instrument tip in the image, full-resolution px.
@@ -25,7 +25,7 @@ struct ToolTip {
   bool present = false;
   double x_px = 0.0;
   double y_px = 0.0;
-  double shaft_angle = 0.0;     ///< where the tip points, rad, image axes
+  double shaft_angle = 0.0;  ///< where the tip points, rad, image axes
   double shaft_width_px = 0.0;
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of the tip, px^2
 };

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eyeslam/tracking/occlusion_mask.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "eyeslam/tracking/vector_kernel.h"
+
+namespace eyeslam::tracking {
+
+namespace {
+
+constexpr int kBlack = 25;  // red below it says nothing about the light; source: tracker study 2.2
+
+// The level below which half of the cells lie that are not black; 0 when all are black.
+int medianAboveBlack(const cv::Mat_<std::uint8_t>& cells)
+{
+  std::array<int, 256> histogram{};
+  int total = 0;
+  for (int y = 0; y < cells.rows; ++y) {
+    for (int x = 0; x < cells.cols; ++x) {
+      if (cells(y, x) <= kBlack) continue;
+      ++histogram[cells(y, x)];
+      ++total;
+    }
+  }
+  int level = kBlack;
+  for (int below = 0; total > 0 && 2 * below < total; ++level) below += histogram[static_cast<std::size_t>(level) + 1];
+  return total > 0 ? level : 0;
+}
+
+EYESLAM_VECTOR_KERNEL void orRow(const std::uint8_t* row, int count, std::uint8_t* bits)
+{
+  for (int i = 0; i < count; ++i) bits[i] = static_cast<std::uint8_t>(bits[i] | row[i]);
+}
+
+// Every cell takes the bits of its (2 radius + 1) square.
+void grow(const cv::Mat_<std::uint8_t>& cells, int radius, cv::Mat_<std::uint8_t>& scratch,
+          cv::Mat_<std::uint8_t>& grown)
+{
+  scratch.setTo(0);
+  grown.setTo(0);
+  for (int y = 0; y < cells.rows; ++y) {
+    for (int v = std::max(0, y - radius); v <= std::min(cells.rows - 1, y + radius); ++v)
+      orRow(cells[v], cells.cols, scratch[y]);
+  }
+  for (int y = 0; y < cells.rows; ++y) {
+    for (int d = -radius; d <= radius; ++d) {
+      const int from = std::max(0, -d);
+      const int count = cells.cols - std::abs(d);
+      if (count > 0) orRow(scratch[y] + from + d, count, grown[y] + from);
+    }
+  }
+}
+
+}  // namespace
+
+OcclusionMask::OcclusionMask(const OcclusionMaskOptions& options) : options_(options) {}
+
+void OcclusionMask::update(const Frame& frame)
+{
+  const cv::Mat_<std::uint8_t>& red = frame.cellRed();
+  const cv::Mat_<std::uint8_t>& blue = frame.cellBlue();
+  width_ = frame.width();
+  height_ = frame.height();
+  for (auto* cells : {&cells_, &bright_, &rough_, &scratch_}) cells->create(red.rows, red.cols);
+
+  median_red_ = medianAboveBlack(red);
+  const int rim = static_cast<int>(options_.rim_red * median_red_);
+  const int bright_grey = static_cast<int>(options_.bright_grey * median_red_);
+  for (int y = 0; y < red.rows; ++y) {
+    for (int x = 0; x < red.cols; ++x) {
+      const bool bright = frame.isGrey() ? red(y, x) > bright_grey : blue(y, x) > options_.bright_blue * red(y, x);
+      const bool dark = red(y, x) < rim || red(y, x) <= kBlack;
+      bright_(y, x) = bright && !dark ? 1 : 0;
+      rough_(y, x) = static_cast<std::uint8_t>((dark ? kRim : kVisible) | (bright ? kBright : kVisible));
+    }
+  }
+  grow(rough_, options_.growth_cells, scratch_, cells_);
+  const int visible = static_cast<int>(cells_.total()) - cv::countNonZero(cells_);
+  visible_fraction_ = static_cast<double>(visible) / static_cast<double>(cells_.total());
+}
+
+}  // namespace eyeslam::tracking
