@@ -14,7 +14,7 @@ class EyeSlamMethod : public Method {
   const tracking::TrackResult& track(const cv::Mat& image) override { return tracker_.track(image); }
   void updateMap() override { tracker_.updateMap(); }
   void finishMap() override { tracker_.finishMap(); }
-  const retina::VesselMap& vesselMap() const override { return tracker_.getVesselMap(); }
+  const retina::VesselMap& vesselMap() override { return tracker_.getVesselMap(); }
   Mosaic mosaic() const override;
   const tracking::EyeSlamTracker* eyeSlam() const override { return &tracker_; }
 

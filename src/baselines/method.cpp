@@ -14,13 +14,13 @@ namespace eyeslam::baselines {
 namespace {
 
 using tracking::TrackerOptions;
-using Maker = std::function<std::unique_ptr<Method>(TrackerOptions, std::uint64_t seed)>;
+using Maker = std::function<std::unique_ptr<Method>(const TrackerOptions&)>;
 
 // A new rival is a line here. The order is that of `--help`; the first is the default.
 const std::vector<std::pair<std::string, Maker>>& makers()
 {
   static const std::vector<std::pair<std::string, Maker>> kMakers = {
-      {"eyeslam", [](TrackerOptions options, std::uint64_t) { return std::make_unique<EyeSlamMethod>(options); }},
+      {"eyeslam", [](const TrackerOptions& options) { return std::make_unique<EyeSlamMethod>(options); }},
   };
   return kMakers;
 }
@@ -34,10 +34,10 @@ std::vector<std::string> methodNames()
   return names;
 }
 
-std::unique_ptr<Method> makeMethod(const std::string& name, const TrackerOptions& options, std::uint64_t seed)
+std::unique_ptr<Method> makeMethod(const std::string& name, const TrackerOptions& options)
 {
   for (const auto& [known, make] : makers()) {
-    if (known == name) return make(options, seed);
+    if (known == name) return make(options);
   }
   throw std::invalid_argument(fmt::format("method '{}' is unknown; one of: {}", name, fmt::join(methodNames(), ", ")));
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <string>
@@ -24,36 +23,36 @@ struct Mosaic {
   double px_per_pixel = 1.0;  ///< full px per pixel of the picture
 };
 
-/// One way to follow the retina from frame to frame, behind one interface, so that programs run and benchmarks compare
-/// them alike. All results speak full-resolution px (contracts, section 1).
+/// A way to say where the view is: this tracker's rivals, and the tracker itself, behind one interface.
+///
+///   auto method = makeMethod("paper", options);
+///   while (grab(image)) use(method->track(image).map_T_frame);
+///
+/// The rivals may allocate and take their time; like the tracker they are repeatable for the same input and seed.
 class Method {
  public:
   virtual ~Method() = default;
 
-  /// Localizes one frame: 8 or 16 bit, one (grey) or three (BGR) channels, all of one size and type. The first frame
-  /// fixes the map's frame. The result is valid until the next call; a frame that cannot be used is `tracked == false`
-  /// with its reason, never an exception.
+  /// Localizes one image, 8 or 16 bit, grey or BGR; the first usable one is frame 0 of the map.
+  /// @return pose in full px; valid until the next call
   virtual const tracking::TrackResult& track(const cv::Mat& image) = 0;
 
-  /// One slice of work on the published map, after `track`.
+  /// The slice of the published map that follows a frame; nothing where a method has no map.
   virtual void updateMap() {}
-  /// Finishes the published map over everything seen so far.
+  /// Finishes the published map over everything seen so far; may take seconds.
   virtual void finishMap() {}
-  /// The published map; empty when the method keeps none.
-  virtual const retina::VesselMap& vesselMap() const = 0;
+  /// The published vessel map so far, empty where a method has none; valid until the next call of this object.
+  virtual const retina::VesselMap& vesselMap() = 0;
   virtual Mosaic mosaic() const { return {}; }
-  /// The tracker behind the method where it is EyeSLAM itself, else null: pictures show its inside.
+  /// The tracker itself where the method is EyeSLAM, else null: pictures show what is inside it.
   virtual const tracking::EyeSlamTracker* eyeSlam() const { return nullptr; }
 };
 
-/// Names for `--method`, the default first.
+/// All names that `makeMethod` knows, `eyeslam` first.
 std::vector<std::string> methodNames();
 
-/// The method of a name in `methodNames()`.
-/// @param options  of EyeSLAM; other methods take from it what they share (the scale)
-/// @param seed     of every random choice
-/// @throws std::invalid_argument naming the methods there are
-std::unique_ptr<Method> makeMethod(const std::string& name, const tracking::TrackerOptions& options,
-                                   std::uint64_t seed);
+/// The method of that name. Of `options`, rivals use the frame's scale, the masks and the seed.
+/// @throws std::invalid_argument naming the known methods when there is none of that name
+std::unique_ptr<Method> makeMethod(const std::string& name, const tracking::TrackerOptions& options);
 
 }  // namespace eyeslam::baselines
