@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "eyeslam/retina/options.h"
+#include "eyeslam/tracking/match_result.h"
+#include "eyeslam/tracking/occupancy_map.h"
+#include "eyeslam/tracking/vessel_point.h"
+
+namespace eyeslam::tracking {
+
+struct RelocalizerOptions {
+  double half_angle_deg = 15.0;
+  int most_points = 200;
+  int min_points = 30;
+  double min_score = 0.35;
+  double ambiguous_ratio = 0.95;
+  int budget = 4000;
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& visitor)
+  {
+    using retina::Range;
+    visitor.field("half_angle_deg", self.half_angle_deg, Range{0.0, 180.0}, "deg",
+                  "angles searched each side of the last pose's, 180 = all; source: tracker study 2.8");
+    visitor.field("most_points", self.most_points, Range{30, 250}, "points",
+                  "taken of those given, evenly; source: tracker study 2.8");
+    visitor.field("min_points", self.min_points, Range{1, 250}, "points", "fewer are too_few_points; source: as match");
+    visitor.field("min_score", self.min_score, Range{0.0, 1.0}, "mean cell value",
+                  "lower is poor_match; source: tracker study 2.8, raised because a whole map offers more chances");
+    visitor.field("ambiguous_ratio", self.ambiguous_ratio, Range{0.5, 2.0}, "of the best score",
+                  "a second place that scores this is one too many; above 1 never; source: periodic maps in the tests");
+    visitor.field("budget", self.budget, Range{100, 1000000}, "thousand vector operations a frame",
+                  "work of one call; source: measured, 4000 stay under 8 ms");
+  }
+};
+
+/// Finds the view anywhere in the map while it is lost.
+///
+/// `search` looks with the current frame's own points, because the eye moves on while a frame is lost. What is promised
+/// is in relocalizer.cpp's head and in the tests.
+/// Never throws; allocates only when the map has grown since the last call.
+class Relocalizer {
+ public:
+  explicit Relocalizer(const RelocalizerOptions& options = {});
+  ~Relocalizer();
+  Relocalizer(Relocalizer&&) noexcept;
+  Relocalizer& operator=(Relocalizer&&) noexcept;
+
+  /// Works a slice on the tables without searching (in a blackout, say), so that the first search need not.
+  /// @return whether the tables are current
+  bool prepare(const OccupancyMap& map) noexcept;
+  /// Searches one frame.
+  /// @param points     vessel points of this frame, centred frame px
+  /// @param last_pose  last good pose: angles around its theta are searched, its scale is kept
+  /// @return  the pose; or too_few_points, ambiguous, poor_match; or searching, when the budget ended before an answer
+  ///          (the best place so far is in the result, not to be trusted unverified)
+  MatchResult search(const ScanPoints& points, const OccupancyMap& map, const retina::Pose2& last_pose) noexcept;
+  /// Starts the next search from the nearest angles again; call it when the view was found.
+  void restart() noexcept;
+
+ private:
+  class Steps;
+  std::unique_ptr<Steps> steps_;
+};
+
+}  // namespace eyeslam::tracking
