@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "eyeslam/tracking/frame_kernels.h"
@@ -45,10 +44,18 @@ void boxSum(cv::Mat_<float>& values, int radius, cv::Mat_<float>& scratch)
   }
 }
 
+// Means of two pixels a cell, at a quarter and three quarters of it: red and blue only tell retina from what is not.
 template <class T>
-double greyLevel(const cv::Mat& image, int x, int y, int channel)
+void sampleRow(const T* upper, const T* lower, const std::vector<int>& at, int blue_to_red, float gain,
+               std::uint8_t* red, std::uint8_t* blue)
 {
-  return image.ptr<T>(y)[x * image.channels() + channel];
+  const std::size_t cells = at.size() / 2;
+  for (std::size_t i = 0; i < cells; ++i) {
+    const T* a = upper + at[2 * i];
+    const T* b = lower + at[2 * i + 1];
+    blue[i] = static_cast<std::uint8_t>(std::min(255.0F, gain * static_cast<float>(a[0] + b[0])));
+    red[i] = static_cast<std::uint8_t>(std::min(255.0F, gain * static_cast<float>(a[blue_to_red] + b[blue_to_red])));
+  }
 }
 
 }  // namespace
@@ -61,7 +68,8 @@ retina::Reason Frame::assign(const cv::Mat& image)
   if (type_ < 0) allocate(image);
   if (green_.empty() || image.type() != type_ || image.size() != full_size_) return retina::Reason::wrong_size;
   shrink(image);
-  averageCells(image);
+  averageCells();
+  sampleColours(image);
   return retina::Reason::none;
 }
 
@@ -95,6 +103,11 @@ void Frame::allocate(const cv::Mat& image)
   const auto padded = static_cast<std::size_t>(columns) * kCell;
   row_gain_.resize(2 * padded + 2);
   rows_.resize(4 * (padded + 2));
+  sample_at_.resize(2 * static_cast<std::size_t>(columns));
+  for (std::size_t i = 0; i < sample_at_.size(); ++i) {
+    const int column = static_cast<int>((static_cast<double>(i) / 2.0 + 0.25) * kCell * pixel_size_.x());
+    sample_at_[i] = std::min(column, image.cols - 1) * channels_;
+  }
 }
 
 void Frame::shrink(const cv::Mat& image)
@@ -114,11 +127,8 @@ void Frame::shrink(const cv::Mat& image)
   green_.convertTo(green_, CV_16U, 1.0 / 64.0);
 }
 
-void Frame::averageCells(const cv::Mat& image)
+void Frame::averageCells()
 {
-  const auto level = image.depth() == CV_8U ? greyLevel<std::uint8_t> : greyLevel<std::uint16_t>;
-  const double sx = kCell * pixel_size_.x();
-  const double sy = kCell * pixel_size_.y();
   const int whole = width() / kCell;
   auto* scratch = reinterpret_cast<std::uint16_t*>(rows_.data());
   for (int y = 0; y < cell_green_.rows; ++y) {
@@ -126,29 +136,37 @@ void Frame::averageCells(const cv::Mat& image)
     for (int j = 0; j < kCell; ++j) rows[j] = green_[std::min(y * kCell + j, height() - 1)];
     kernels::averageFourRows(rows, whole * kCell, scratch, cell_green_[y]);
     if (whole < cell_green_.cols) cell_green_(y, whole) = rows[0][width() - 1];
-    // Two pixels a cell suffice: red and blue only tell retina from what is not.
-    const int y0 = std::min(static_cast<int>((y + 0.25) * sy), image.rows - 1);
-    const int y1 = std::min(static_cast<int>((y + 0.75) * sy), image.rows - 1);
-    for (int x = 0; x < cell_green_.cols; ++x) {
-      const int x0 = std::min(static_cast<int>((x + 0.25) * sx), image.cols - 1);
-      const int x1 = std::min(static_cast<int>((x + 0.75) * sx), image.cols - 1);
-      const auto mean = [&](int channel) {
-        const double sum = level(image, x0, y0, channel) + level(image, x1, y1, channel);
-        return static_cast<std::uint8_t>(std::min(255.0, sum * to_eight_bits_ / 2.0));
-      };
-      cell_red_(y, x) = mean(channels_ == 3 ? 2 : 0);
-      cell_blue_(y, x) = mean(0);
+  }
+}
+
+void Frame::sampleColours(const cv::Mat& image)
+{
+  const double step = kCell * pixel_size_.y();
+  const auto gain = static_cast<float>(to_eight_bits_ / 2.0);
+  const int blue_to_red = channels_ == 3 ? 2 : 0;
+  for (int y = 0; y < cell_red_.rows; ++y) {
+    const int upper = std::min(static_cast<int>((y + 0.25) * step), image.rows - 1);
+    const int lower = std::min(static_cast<int>((y + 0.75) * step), image.rows - 1);
+    if (image.depth() == CV_8U) {
+      sampleRow(image.ptr<std::uint8_t>(upper), image.ptr<std::uint8_t>(lower), sample_at_, blue_to_red, gain,
+                cell_red_[y], cell_blue_[y]);
+    } else {
+      sampleRow(image.ptr<std::uint16_t>(upper), image.ptr<std::uint16_t>(lower), sample_at_, blue_to_red, gain,
+                cell_red_[y], cell_blue_[y]);
     }
   }
 }
 
 void Frame::estimateBackground(const OcclusionMask& mask)
 {
-  const cv::Mat_<std::uint8_t>& hidden = mask.cells();
   for (int y = 0; y < weight_.rows; ++y) {
+    const std::uint8_t* hidden = mask.cells()[y];
+    const std::uint16_t* green = cell_green_[y];
+    float* weight = weight_[y];
+    float* weighted = weighted_[y];
     for (int x = 0; x < weight_.cols; ++x) {
-      weight_(y, x) = hidden(y, x) == OcclusionMask::kVisible ? 1.0F : 0.0F;
-      weighted_(y, x) = weight_(y, x) * static_cast<float>(cell_green_(y, x));
+      weight[x] = hidden[x] == OcclusionMask::kVisible ? 1.0F : 0.0F;
+      weighted[x] = weight[x] * static_cast<float>(green[x]);
     }
   }
   for (const int radius : {options_.background_radius_cells, 1}) {
@@ -156,12 +174,13 @@ void Frame::estimateBackground(const OcclusionMask& mask)
     boxSum(weighted_, radius, box_);
   }
   for (int y = 0; y < weight_.rows; ++y) {
+    const float* weight = weight_[y];
+    const float* weighted = weighted_[y];
+    float* inverse = inverse_background_[y];
     for (int x = 0; x < weight_.cols; ++x) {
-      // Where nothing is visible nearby the contrast is zero: the pixel counts as its own background.
-      const bool known = weight_(y, x) > 0.0F && weighted_(y, x) > 0.0F;
-      const float background =
-          known ? weighted_(y, x) / weight_(y, x) : std::max(1.0F, static_cast<float>(cell_green_(y, x)));
-      inverse_background_(y, x) = static_cast<float>(kContrastUnit) / background;
+      // Where nothing is visible nearby the contrast means nothing, but it must be finite.
+      const float background = weighted[x] > 0.0F ? weighted[x] / weight[x] : static_cast<float>(kContrastUnit);
+      inverse[x] = static_cast<float>(kContrastUnit) / background;
     }
   }
 }

@@ -73,7 +73,8 @@ class Frame {
  private:
   void allocate(const cv::Mat& image);
   void shrink(const cv::Mat& image);
-  void averageCells(const cv::Mat& image);
+  void averageCells();
+  void sampleColours(const cv::Mat& image);
   void estimateBackground(const OcclusionMask& mask);
 
   FrameOptions options_;
@@ -88,6 +89,7 @@ class Frame {
   cv::Mat_<std::int16_t> contrast_;
   cv::Mat_<float> weight_, weighted_, inverse_background_, box_;
   std::vector<float> row_gain_;
+  std::vector<int> sample_at_;      // two elements of an image row for each cell
   std::vector<std::int16_t> rows_;  // three rows of unsmoothed contrast
   cv::Mat channel_, wide_;          // for scales other than one half
 };

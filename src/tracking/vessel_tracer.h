@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "eyeslam/retina/options.h"
+#include "eyeslam/tracking/tracing_kernels.h"
+#include "eyeslam/tracking/vessel_detector.h"
+
+namespace eyeslam::tracking {
+
+struct VesselTracerOptions {
+  TracingKernelOptions kernels;
+  int grid_pitch_px = 12;
+  double seed_depth = 1.0;
+  double edge_strength = 1.6;
+  double lowest_strength = 0.02;
+  double weaker_edge = 0.25;
+  int farthest_edge_px = 7;
+  double step_px = 2.5;
+  int turn = 2;
+  int weak_steps = 2;
+  int shortest_trace = 6;
+  int most_points = 4000;
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& visitor)
+  {
+    using retina::Range;
+    visitor.group("kernels", self.kernels);
+    visitor.field("grid_pitch_px", self.grid_pitch_px, Range{4, 64}, "frame px",
+                  "distance of the lines on which seeds are sought; source: facts A2.3 (12 to 16 proposed)");
+    visitor.field("seed_depth", self.seed_depth, Range{0.0, 10.0}, "spreads",
+                  "how far under the median level a seed lies; source: eyeslam-bench detect");
+    visitor.field("edge_strength", self.edge_strength, Range{0.0, 20.0}, "spreads",
+                  "least sum of both edge responses; source: eyeslam-bench detect");
+    visitor.field("lowest_strength", self.lowest_strength, Range{0.0, 1.0}, "fraction of the background",
+                  "least sum of both edge responses however calm the picture; source: tracker study 2.5 (0.03)");
+    visitor.field("weaker_edge", self.weaker_edge, Range{0.0, 1.0}, "of the stronger edge",
+                  "a vessel has two edges, a shaft or a bloom one; source: eyeslam-bench detect");
+    visitor.field("farthest_edge_px", self.farthest_edge_px, Range{2, TracingKernels::kFarthestEdge}, "frame px",
+                  "half of the widest vessel; source: facts A2.3 (1 to 7 px)");
+    visitor.field("step_px", self.step_px, Range{1.0, 5.0}, "frame px",
+                  "between two points of a trace; source: facts A2.3 (2 to 3 px)");
+    visitor.field("turn", self.turn, Range{1, 3}, "steps of 22.5 deg",
+                  "tested to either side at each step; source: paper, wider than Can's 1 (facts A2.3.6)");
+    visitor.field("weak_steps", self.weak_steps, Range{0, 10}, "steps",
+                  "below the threshold that a trace survives; source: facts A2.3 (2 to 3)");
+    visitor.field("shortest_trace", self.shortest_trace, Range{1, 100}, "points",
+                  "shorter traces are noise; source: eyeslam-bench detect");
+    visitor.field("most_points", self.most_points, Range{100, 60000}, "points",
+                  "tracing stops there (counted work, not time: repeatable); source: five times what a view has");
+  }
+};
+
+/// Exploratory vessel tracing after Can et al. 1999 with the paper's wider turning (facts A2.3): levels from a sparse
+/// grid, seeds on its lines, then each vessel is followed from its seed both ways, a few templates a step, until it
+/// ends. Only pixels at vessels are ever looked at. Points come in the order of the traces; positions are good to half
+/// a pixel (CrossVesselSmoother makes them finer). Repeatable; no allocation after the first frame of a size.
+class VesselTracer : public VesselDetector {
+ public:
+  explicit VesselTracer(const VesselTracerOptions& options = {});
+
+  void detect(const Frame& frame, const OcclusionMask& mask, VesselPoints& points) override;
+
+ private:
+  struct Seed {
+    int depth = 0;  // under the median level
+    int x = 0;
+    int y = 0;
+  };
+  struct Place {  // where a trace stands
+    float x = 0.0F;
+    float y = 0.0F;
+    int direction = 0;  // [0, 16)
+    VesselEdges edges;
+  };
+
+  void estimateLevels(const cv::Mat_<std::int16_t>& plane, const OcclusionMask& mask);
+  void findSeeds(const cv::Mat_<std::int16_t>& plane, const OcclusionMask& mask);
+  bool validate(const Seed& seed, Place& place) const;
+  void trace(const Place& seed, const OcclusionMask& mask, VesselPoints& points);
+  void follow(Place place, const OcclusionMask& mask, VesselPoints& points);
+  Place bestPlace(const Place& from, int x, int y) const;
+  void centre(Place& place) const;
+  bool isStrong(const VesselEdges& edges) const;
+  bool isFree(const Place& place, const OcclusionMask& mask) const;
+  void claim(const Place& place);
+  float calibre(const Place& place) const;
+  VesselPoint pointAt(const Place& place) const;
+  bool isFull(const VesselPoints& points) const;
+
+  VesselTracerOptions options_;
+  TracingKernels kernels_;
+  int median_ = 0;     // level of the plane, 1 / Frame::kContrastUnit
+  int spread_ = 0;     // robust sigma of the plane
+  int threshold_ = 0;  // of the sum of both edges
+  std::vector<int> histogram_;
+  std::vector<Seed> seeds_;
+  cv::Mat_<std::uint16_t> labels_;  // number of the step that claimed the pixel, from 1; 0 = free
+  int claims_ = 0;                  // steps so far
+  int trace_start_ = 0;             // claims before this trace, and before this branch of it
+  int branch_start_ = 0;
+};
+
+}  // namespace eyeslam::tracking
