@@ -22,6 +22,7 @@ endif()
 add_library(eyeslam_build_options INTERFACE)
 target_compile_options(eyeslam_build_options INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow $<$<BOOL:${EYESLAM_WERROR}>:-Werror>)
+add_link_options(-Wl,--as-needed) # or every test would load OpenCV's windows
 if(EYESLAM_SANITIZE)
   add_compile_options(-fsanitize=${EYESLAM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -O1)
   add_link_options(-fsanitize=${EYESLAM_SANITIZE})

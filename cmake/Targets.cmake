@@ -14,6 +14,9 @@ function(eyeslam_library name)
     $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(eyeslam_${name} PUBLIC cxx_std_17)
   target_link_libraries(eyeslam_${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:eyeslam_build_options>)
+  install(TARGETS eyeslam_${name} EXPORT eyeslamTargets DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/eyeslam/${name}
+    FILES_MATCHING PATTERN "*.h")
 endfunction()
 
 # eyeslam_program(NAME source.cpp LIBRARIES targets): a program of apps/, installed under its own name.

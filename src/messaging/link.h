@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "eyeslam/messaging/authentication.h"
+
+namespace lcm {
+class LCM;
+}
+
+namespace eyeslam::messaging {
+
+/// One program's connection to LCM.
+///
+///   Link link("", session, readKey("micron.key"));
+///   Publisher<eyeslam::retina_pose_t> poses(link, "RETINA_POSE");
+///   poses.publish(message, utime_now);
+class Link {
+ public:
+  /// @param url      `udpm://ADDRESS:PORT?ttl=N`, `memq://`, `file://PATH?mode=w`; empty: LCM_DEFAULT_URL, and without
+  ///                 that LCM's own address with ttl=0, which does not leave this computer
+  /// @param session  this run of the program, not 0; receivers keep to the first session they hear
+  /// @param key      signs messages; without it only what stays on this computer (ttl=0, memq, file) is served
+  /// @throws std::runtime_error  one line with the URL and the remedy
+  Link(const std::string& url, std::int64_t session, const std::optional<Key>& key);
+  ~Link();
+
+  std::int64_t session() const { return session_; }
+  /// Null without a key.
+  const Authenticator* authenticator() const { return authenticator_ ? &*authenticator_ : nullptr; }
+  /// The URL in use, with the default filled in.
+  const std::string& url() const { return url_; }
+  /// For subscriptions: `memq://` connects only within one object.
+  lcm::LCM& lcm() { return *lcm_; }
+
+  /// Sends an encoded message. @return whether LCM took it (nobody knows whether it arrives)
+  bool send(const std::string& channel, const std::uint8_t* bytes, std::size_t size);
+
+ private:
+  std::string url_;
+  std::int64_t session_;
+  std::optional<Authenticator> authenticator_;
+  std::unique_ptr<lcm::LCM> lcm_;
+};
+
+/// Publishes one type on one channel: fills what every message has (contracts, section 4), encodes and signs it.
+/// One thread. After the first message of a size it allocates nothing.
+template <class Message>
+class Publisher {
+ public:
+  Publisher(Link& link, std::string channel) : link_(link), channel_(std::move(channel)) {}
+
+  /// @param message     all fields but utime_sent, seq, session and tag are the caller's; these are filled
+  /// @param utime_sent  now, us since 1970
+  /// @return whether LCM took it; a refused message used up its number, so that receivers see the gap
+  bool publish(Message& message, std::int64_t utime_sent)
+  {
+    message.utime_sent = utime_sent;
+    message.seq = next_seq_++;
+    message.session = link_.session();
+    bytes_.resize(static_cast<std::size_t>(message.getEncodedSize()));
+    if (!encode(message)) return false;
+    if constexpr (HasTag<Message>::value) sign(message);
+    return link_.send(channel_, bytes_.data(), bytes_.size());
+  }
+
+  /// Messages published so far, refused ones included.
+  std::int64_t count() const { return next_seq_; }
+
+ private:
+  template <class T, class = void>
+  struct HasTag : std::false_type {};
+  template <class T>
+  struct HasTag<T, std::void_t<decltype(T::tag)>> : std::true_type {};
+
+  bool encode(const Message& message)
+  {
+    const int size = static_cast<int>(bytes_.size());
+    return message.encode(bytes_.data(), 0, size) == size;
+  }
+
+  // The tag is the last field, and bytes are encoded as they are.
+  void sign(Message& message)
+  {
+    const std::size_t body = bytes_.size() - kTagBytes;
+    const Authenticator* authenticator = link_.authenticator();
+    const Tag tag = authenticator ? authenticator->tag(channel_, bytes_.data(), body) : Tag{};
+    for (std::size_t i = 0; i < kTagBytes; ++i) message.tag[i] = bytes_[body + i] = tag[i];
+  }
+
+  Link& link_;
+  std::string channel_;
+  std::int64_t next_seq_ = 0;
+  std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace eyeslam::messaging
