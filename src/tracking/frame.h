@@ -58,6 +58,8 @@ class Frame {
   Eigen::Vector2d pixelSize() const { return pixel_size_; }
   /// Where the centre of the frame lies in the image as it came, full px.
   Eigen::Vector2d centreInImage() const;
+  /// The grey level of white in the image as it came.
+  double white() const { return 255.0 / to_eight_bits_; }
   /// Size of the image as it came, full px.
   cv::Size fullSize() const { return full_size_; }
 
