@@ -11,8 +11,7 @@ constexpr double kUsualRate = 30.0;
 
 FrameTimes::FrameTimes(double frames_per_second)
     : period_(1.0 / (std::isfinite(frames_per_second) && frames_per_second > 0.0 ? frames_per_second : kUsualRate))
-{
-}
+{}
 
 double FrameTimes::next(double position_ms)
 {

@@ -11,17 +11,19 @@ namespace eyeslam::files {
 /// A video file, decoded by FFmpeg.
 class VideoFileSource : public VideoSource {
  public:
+  /// @throws FileError when FFmpeg finds no picture in it
   VideoFileSource(const std::string& path, const VideoSourceOptions& options);
 
   bool read(VideoFrame& frame) override;
   void skipTo(std::int64_t first) override;
-  std::optional<std::int64_t> frameCount() const override;
+  std::optional<std::int64_t> announcedFrames() const override;
   double framesPerSecond() const override { return rate_; }
   std::vector<std::string> paths() const override { return {path_}; }
 
  private:
   bool grab();
-  void checkEnd();
+  void take(cv::Mat& image);
+  void checkCompleteness();
   void checkSize(const cv::Mat& image);
 
   std::string path_;
@@ -34,7 +36,6 @@ class VideoFileSource : public VideoSource {
   FrameTimes times_;
   std::int64_t grabbed_ = 0;
   double time_ = 0.0;  // of the last grabbed frame
-  std::int64_t first_gap_ = -1;  // the frame after which time jumped first: decoders drop what is damaged
   cv::Size size_;
   cv::Mat colour_;
 };

@@ -33,8 +33,8 @@ class VideoSource {
   /// Goes on without decoding what can be left out; the next frame read is `first`.
   virtual void skipTo(std::int64_t first) = 0;
 
-  /// How many frames there are; nothing where that is not known before the end (camera, mkv, avi).
-  virtual std::optional<std::int64_t> frameCount() const = 0;
+  /// How many frames the input announces, for a progress bar; nothing where it does not (a camera).
+  virtual std::optional<std::int64_t> announcedFrames() const = 0;
   /// Nominal frames per second, for the overlay.
   virtual double framesPerSecond() const = 0;
   /// Whether frames come when they come: a camera.
@@ -50,8 +50,8 @@ class VideoSource {
 
 struct VideoSourceOptions {
   double frames_per_second = 30.0;  ///< of images, which carry no time
-  std::int64_t last_frame = -1;     ///< number of the last frame that will be asked for, -1 = all: damage after it is none
-  std::function<double()> now;      ///< monotonic clock, s: the time of a camera's frames
+  std::int64_t last_frame = -1;  ///< number of the last frame that will be asked for, -1 = all: damage after it is none
+  std::function<double()> now;   ///< monotonic clock, s: the time of a camera's frames
 };
 
 /// Opens a video file, an image folder, a glob of images, or `camera:N`.

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+
+#include "eyeslam/configuration/assignment.h"
+
+namespace eyeslam::configuration {
+namespace {
+
+// No options struct nests deeper; an alias to its own anchor would never end.
+constexpr int kDeepestGroup = 8;
+
+class Flattener {
+ public:
+  explicit Flattener(const std::string& path) : path_(path) {}
+
+  void add(const YAML::Node& group, const std::string& prefix, int depth)
+  {
+    if (depth > kDeepestGroup) fail(group, fmt::format("'{}' is nested too deeply", prefix));
+    std::set<std::string> seen;
+    for (const auto& entry : group) {
+      if (!entry.first.IsScalar()) fail(entry.first, "a key must be a word");
+      const std::string key = prefix + entry.first.Scalar();
+      // yaml-cpp keeps both and would look up the first without a word.
+      if (!seen.insert(key).second) fail(entry.first, fmt::format("key '{}' stands twice; keep one", key));
+      addEntry(entry.second, key, depth);
+    }
+  }
+
+  std::vector<Assignment> take() { return std::move(assignments_); }
+
+ private:
+  void addEntry(const YAML::Node& value, const std::string& key, int depth)
+  {
+    if (value.IsMap()) return add(value, key + ".", depth + 1);
+    if (value.IsSequence()) fail(value, fmt::format("key '{}' has a list; one value is wanted", key));
+    if (!value.IsScalar()) fail(value, fmt::format("key '{}' has no value", key));
+    assignments_.push_back({key, value.Scalar(), origin(value)});
+  }
+
+  std::string origin(const YAML::Node& node) const { return fmt::format("{}:{}", path_, node.Mark().line + 1); }
+
+  [[noreturn]] void fail(const YAML::Node& node, const std::string& what) const
+  {
+    throw ConfigurationError(origin(node) + ": " + what);
+  }
+
+  std::string path_;
+  std::vector<Assignment> assignments_;
+};
+
+std::string oneLine(std::string text)
+{
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+std::vector<YAML::Node> parse(const std::string& path)
+{
+  std::ifstream file(path);
+  // A folder opens, but nothing can be read from it.
+  if (!file || file.peek() == std::ifstream::traits_type::eof()) {
+    if (file.eof()) return {};
+    throw ConfigurationError(fmt::format("{}: cannot be read; a YAML file is wanted", path));
+  }
+  try {
+    return YAML::LoadAll(file);
+  } catch (const YAML::Exception& error) {
+    throw ConfigurationError(fmt::format("{}:{}: is no YAML: {}", path, error.mark.line + 1, oneLine(error.msg)));
+  }
+}
+
+}  // namespace
+
+std::vector<Assignment> readYaml(const std::string& path)
+{
+  const std::vector<YAML::Node> documents = parse(path);
+  if (documents.size() > 1) throw ConfigurationError(path + ": holds several YAML documents; one is wanted");
+  if (documents.empty() || documents[0].IsNull()) return {};
+  if (!documents[0].IsMap()) throw ConfigurationError(path + ": holds no 'key: value' lines");
+  Flattener flattener(path);
+  flattener.add(documents[0], "", 0);
+  return flattener.take();
+}
+
+}  // namespace eyeslam::configuration
