@@ -21,9 +21,14 @@ endif()
 
 add_library(eyeslam_build_options INTERFACE)
 target_compile_options(eyeslam_build_options INTERFACE
-  -Wall -Wextra -Wpedantic -Wconversion -Wshadow $<$<BOOL:${EYESLAM_WERROR}>:-Werror>)
+  -Wall -Wextra -Wpedantic -Wconversion -Wshadow $<$<BOOL:${EYESLAM_WERROR}>:-Werror>
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>) # which g++ leaves out of -Wconversion
 add_link_options(-Wl,--as-needed) # or every test would load OpenCV's windows
 if(EYESLAM_SANITIZE)
-  add_compile_options(-fsanitize=${EYESLAM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -O1)
+  add_compile_options(-fsanitize=${EYESLAM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -O1
+    -g1 -UNDEBUG -D_GLIBCXX_ASSERTIONS)
   add_link_options(-fsanitize=${EYESLAM_SANITIZE})
+endif()
+if(EYESLAM_FUZZERS)
+  add_compile_options(-fsanitize=fuzzer-no-link)
 endif()

@@ -27,9 +27,10 @@ function(eyeslam_program name source)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
-# eyeslam_test(folder/name_test LIBRARIES targets): one executable and one ctest entry a test file.
+# eyeslam_test(folder/name_test LIBRARIES targets [SLOW]): one executable and one ctest entry a test file. SLOW: not
+# under sanitizers, such as whole sequences.
 function(eyeslam_test path)
-  cmake_parse_arguments(arg "" "TIMEOUT" "LIBRARIES" ${ARGN})
+  cmake_parse_arguments(arg "SLOW" "TIMEOUT" "LIBRARIES" ${ARGN})
   get_filename_component(name ${path} NAME)
   add_executable(${name} ${PROJECT_SOURCE_DIR}/tests/${path}.cpp)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
@@ -40,4 +41,7 @@ function(eyeslam_test path)
   endif()
   set_tests_properties(${name} PROPERTIES TIMEOUT ${arg_TIMEOUT}
     ENVIRONMENT "EYESLAM_SHARED=${PROJECT_SOURCE_DIR}/../shared;OMP_NUM_THREADS=1")
+  if(arg_SLOW)
+    set_tests_properties(${name} PROPERTIES LABELS slow)
+  endif()
 endfunction()

@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""tidy.py BUILD_DIR: runs clang-tidy on our own sources, again only where a source or a header of ours changed."""
+import concurrent.futures
+import hashlib
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+CACHE = ROOT / "build" / "tidy"
+INCLUDE = re.compile(r'^\s*#include\s*"eyeslam/([^"]+)"', re.M)
+
+
+def headers(path, seen):
+    """Our headers that a file includes, directly or not."""
+    for name in INCLUDE.findall(path.read_text()):
+        header = ROOT / "src" / name
+        if header.exists() and header not in seen:
+            seen.add(header)
+            headers(header, seen)
+    return seen
+
+
+def key(entry):
+    path = pathlib.Path(entry["file"])
+    digest = hashlib.sha256(entry["command"].encode())
+    beside = sorted(path.parent.glob("*.h"))
+    for part in (ROOT / ".clang-tidy", path, *sorted(headers(path, set(beside)))):
+        digest.update(part.read_bytes())
+    return digest.hexdigest()
+
+
+def check(build, entry):
+    """None when the file is clean, else what clang-tidy says."""
+    mark = CACHE / key(entry)
+    if mark.exists():
+        return None
+    done = subprocess.run(["clang-tidy-14", "--quiet", "-p", build, entry["file"]], capture_output=True, text=True)
+    if done.returncode:
+        return done.stdout + done.stderr
+    mark.touch()
+    return None
+
+
+def main():
+    build = sys.argv[1]
+    CACHE.mkdir(parents=True, exist_ok=True)
+    entries = [entry for entry in json.loads((pathlib.Path(build) / "compile_commands.json").read_text())
+               if pathlib.Path(entry["file"]).relative_to(ROOT).parts[0] in ("src", "apps")]
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        complaints = [said for said in pool.map(lambda entry: check(build, entry), entries) if said]
+    for said in complaints:
+        print(said)
+    print(f"{len(entries)} sources, {len(complaints)} with findings")
+    sys.exit(1 if complaints or not entries else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""run_documents.py PROGRAM_DIR: runs the commands of README.md and docs/, in order, each document in its own shell.
+
+my_video.mp4 stands for the reader's video: a short rendered one takes its place. ./test is not run again.
+"""
+import os
+import subprocess
+import sys
+
+import tree
+from documents_test import commands, documents
+
+SKIPPED = ("./test", "git ", "cmake ")  # this run; fetching; what ./test has done
+
+
+def run(line, environment):
+    return subprocess.run(["bash", "-c", line], cwd=tree.ROOT, env=environment).returncode == 0
+
+
+def main():
+    environment = dict(os.environ, PATH=os.path.abspath(sys.argv[1]) + ":" + os.environ["PATH"])
+    sequence = "out/documents/sequence"
+    failed = [] if run(f"eyeslam-sim --quiet --out {sequence} --duration 2", environment) else ["rendering a video"]
+    for path in documents():
+        for line in commands(tree.text(path)):
+            if line.startswith(SKIPPED):
+                continue
+            print(f"{path}: {line}", flush=True)
+            if not run(line.replace("my_video.mp4", f"{sequence}/video.mp4"), environment):
+                failed.append(f"{path}: {line}")
+    print("\n".join(f"failed: {line}" for line in failed))
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eyeslam/messaging/link.h"
+#include "eyeslam/messaging/retina_messages.h"
+
+int main()
+{
+  eyeslam::messaging::Link link("memq://", 1, {});
+  eyeslam::messaging::Publisher<eyeslam::retina_pose_t> poses(link, "RETINA_POSE");
+  eyeslam::retina_pose_t message = eyeslam::messaging::retinaPoseMessage({}, {}, {});
+  return poses.publish(message, 1) ? 0 : 1;
+}
