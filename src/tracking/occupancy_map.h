@@ -59,7 +59,7 @@ class OccupancyMap {
 
   struct Tile {
     std::array<std::uint8_t, kTile * kTile> cells{};
-    std::uint32_t changes = 0;  ///< counts the calls that wrote into the tile
+    std::uint32_t changes = 0;  ///< the map's `changes()` when the tile was last written
   };
 
   explicit OccupancyMap(const OccupancyMapOptions& options = {});
@@ -74,7 +74,7 @@ class OccupancyMap {
 
   bool empty() const { return known_.empty(); }
   double cellSize() const { return options_.cell_px; }
-  /// Smallest rectangle of cells that holds every cell ever hit; empty for an empty map.
+  /// Rectangle around every cell ever hit and its eight neighbours; empty for an empty map.
   const cv::Rect& knownCells() const { return known_; }
   /// Value of one cell, 0 where nothing is known.
   std::uint8_t cell(int i, int j) const;
@@ -86,8 +86,9 @@ class OccupancyMap {
   std::uint32_t changes() const { return changes_; }
 
  private:
+  void hit(int i, int j);
   void raise(int i, int j, int hit, int most);
-  void decayRow(const OcclusionMask& mask, const cv::Size& view, const retina::Pose2& frame_T_map, int row,
+  void decayRow(const OcclusionMask& mask, const cv::Size& view, const retina::Pose2& frame_T_map, int j,
                 const cv::Rect& box);
 
   OccupancyMapOptions options_;

@@ -44,11 +44,16 @@ class PointSelector {
   void restart();
 
  private:
+  void shuffle(const VesselPoints& points);
+  void sortByRound(const VesselPoints& points);
+
   PointSelectorOptions options_;
   std::mt19937 random_;
-  std::vector<std::uint32_t> order_;  // point numbers, shuffled, then by round
-  std::vector<std::uint32_t> round_;  // which round each shuffled point belongs to
-  std::vector<std::uint32_t> squares_;
+  std::vector<std::uint32_t> squares_;   // points met in each square
+  std::vector<std::uint32_t> order_;     // numbers of the usable points, shuffled
+  std::vector<std::uint32_t> round_;     // of each of them
+  std::vector<std::uint32_t> starts_;    // where each round begins
+  std::vector<std::uint32_t> by_round_;  // the numbers again, first round first
 };
 
 }  // namespace eyeslam::tracking

@@ -12,6 +12,7 @@ struct PoseFilterOptions {
   double acceleration_px = 1.5;
   double acceleration_deg = 0.17;
   double scale_walk = 0.002;
+  double scale_noise = 0.001;
   double jump_gate = 50.0;
   double coast_fade = 0.7;
 
@@ -25,6 +26,8 @@ struct PoseFilterOptions {
                   "white angular acceleration of the eye, one sigma; source: tracker study 2.7");
     visitor.field("scale_walk", self.scale_walk, Range{0.0, 0.1}, "per frame",
                   "random walk of the magnification, one sigma; source: tracker study 2.12 (deform needs 0.0018)");
+    visitor.field("scale_noise", self.scale_noise, Range{1e-6, 0.1}, "",
+                  "error of a measured magnification, one sigma; source: a tenth of a cell at the view's edge");
     visitor.field("jump_gate", self.jump_gate, Range{1.0, 1e6}, "Mahalanobis^2",
                   "a larger innovation is a jump, which is followed and not smoothed; source: tracker study 2.7");
     visitor.field("coast_fade", self.coast_fade, Range{0.0, 1.0}, "per frame",
@@ -63,6 +66,7 @@ class PoseFilter {
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
+  void correctScale(double measured);
   void jumpTo(const retina::Pose2& pose, const Eigen::Matrix3d& covariance);
   void limitCovariance();
 

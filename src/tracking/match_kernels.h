@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace eyeslam::tracking {
+
+// The inner loops of scan matching, free of any notion but arrays, so that they can be compiled for wider vectors.
+
+/// Turned and shifted points, floored: cell_x[n] = floor(c x[n] - s y[n] + tx), cell_y[n] = floor(s x[n] + c y[n] +
+/// ty).
+void floorTurned(const double* x, const double* y, int count, const double (&turn)[4], std::int32_t* cell_x,
+                 std::int32_t* cell_y);
+
+/// sums[r * 16 + c] = sum over n of table[offsets[n] + r * stride + c], for 16 columns; reads 16 bytes a row.
+void sumSixteenColumns(const std::uint8_t* table, std::ptrdiff_t stride, const std::int32_t* offsets, int count,
+                       int rows, std::uint32_t* sums);
+/// Adds rows of 4-bit bounds: sums[r * sums_stride + c] = sum over n of planes[offsets[n] + r * stride + c], c <
+/// columns rounded up to 32. Each bound is at most 16, so fifteen of them fit in a byte; count is at most 4000.
+void sumBounds(const std::uint8_t* planes, std::ptrdiff_t stride, const std::int32_t* offsets, int count, int rows,
+               int columns, std::uint16_t* sums, std::ptrdiff_t sums_stride);
+
+/// bounds[x] = maximum of the eight rows from `table` on and of columns x to x + 7, in sixteenths of 256 rounded up.
+/// Reads width + 8 bytes a row; `scratch` holds width + 8 bytes.
+void poolEightByEight(const std::uint8_t* table, std::ptrdiff_t stride, int width, std::uint8_t* scratch,
+                      std::uint8_t* bounds);
+
+}  // namespace eyeslam::tracking
