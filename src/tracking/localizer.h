@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+
+#include "eyeslam/tracking/alignment_template.h"
+#include "eyeslam/tracking/frame.h"
+#include "eyeslam/tracking/mosaic.h"
+#include "eyeslam/tracking/occlusion_mask.h"
+#include "eyeslam/tracking/refiner.h"
+#include "eyeslam/tracking/relocalizer.h"
+#include "eyeslam/tracking/scan_matcher.h"
+#include "eyeslam/tracking/tracker_options.h"
+
+namespace eyeslam::tracking {
+
+/// Where a frame lies in the map, or why that could not be said.
+struct Localization {
+  retina::Reason reason = retina::Reason::none;
+  PoseEstimate pose;
+  double score = 0.0;  ///< of the match, [0, 1]
+  double ncc = 0.0;    ///< frame against mosaic
+  double sigma = 0.0;  ///< robust deviation of frame from mosaic, contrast units
+};
+
+/// Localization by scan matching, refined and verified against the mosaic. From the cheapest to the dearest search:
+/// around the prediction, a wide window, the smeared picture, the whole map; the first answer that the mosaic confirms
+/// is taken (tracker study, 2.8 to 2.11).
+class Localizer {
+ public:
+  explicit Localizer(const TrackerOptions& options);
+
+  void restart();
+  /// @param points  chosen points of the frame, centred frame px
+  Localization localize(const Frame& frame, const OcclusionMask& mask, const ScanPoints& points,
+                        const OccupancyMap& occupancy, const Mosaic& mosaic, const PosePrediction& predicted);
+
+ private:
+  struct View;  // what all searches of one frame share
+  bool confirm(const View& view, const MatchResult& match, bool wide);
+
+  LocalizerOptions options_;
+  double cell_px_;
+  ScanMatcher matcher_;
+  Relocalizer relocalizer_;
+  Refiner refiner_;
+  AlignmentTemplate template_;
+  ScanPoints few_;
+  Localization best_;
+  double running_ncc_ = 0.0;
+};
+
+}  // namespace eyeslam::tracking

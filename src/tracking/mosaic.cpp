@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eyeslam/tracking/mosaic.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "eyeslam/tracking/cubic_sampler.h"
+#include "eyeslam/tracking/vector_kernel.h"
+
+namespace eyeslam::tracking {
+
+namespace {
+
+constexpr int kTile = Mosaic::kTile;
+
+// The part of [from, to] in which start + i step lies in [lowest, highest].
+void clip(double start, double step, double lowest, double highest, double& from, double& to)
+{
+  if (std::abs(step) < 1e-12) {
+    if (start < lowest || start > highest) to = from - 1.0;
+    return;
+  }
+  const double a = (lowest - start) / step;
+  const double b = (highest - start) / step;
+  from = std::max(from, std::min(a, b));
+  to = std::min(to, std::max(a, b));
+}
+
+// Squared gradients of one row of the strip by 3x3 smoothed central differences; 0 next to a pixel never seen.
+EYESLAM_VECTOR_KERNEL void gradientRow(const float* above, const float* middle, const float* below,
+                                       const std::uint8_t* known, float* gx, float* gy, float* strength)
+{
+  constexpr float kEighth = 0.125F;
+  for (int i = 0; i < kTile; ++i) {
+    const float dx = (above[i + 2] - above[i]) + 2.0F * (middle[i + 2] - middle[i]) + (below[i + 2] - below[i]);
+    const float dy = (below[i] - above[i]) + 2.0F * (below[i + 1] - above[i + 1]) + (below[i + 2] - above[i + 2]);
+    gx[i] = kEighth * dx;
+    gy[i] = kEighth * dy;
+    strength[i] = known[i] ? gx[i] * gx[i] + gy[i] * gy[i] : 0.0F;
+  }
+}
+
+}  // namespace
+
+cv::Rect viewBox(const cv::Size& frame, const retina::Pose2& map_T_frame, const Eigen::Vector2d& mosaic_centre)
+{
+  const Eigen::Matrix2d linear = map_T_frame.linear();
+  const Eigen::Vector2d half = linear.cwiseAbs() * Eigen::Vector2d((frame.width - 1) / 2.0, (frame.height - 1) / 2.0);
+  const Eigen::Vector2d middle = mosaic_centre + map_T_frame.translation();
+  const auto bound = [](double v) {
+    constexpr double kReach = Mosaic::kReach;
+    return static_cast<int>(std::floor(std::clamp(v, -kReach, kReach)));
+  };
+  const cv::Point from(bound(middle.x() - half.x()), bound(middle.y() - half.y()));
+  const cv::Point to(bound(middle.x() + half.x()) + 1, bound(middle.y() + half.y()) + 1);
+  return {from, to + cv::Point(1, 1)};
+}
+
+Mosaic::Mosaic(const MosaicOptions& options) : options_(options) {}
+
+void Mosaic::clear() { tiles_.clear(); }
+
+void Mosaic::start(const Frame& frame, const OcclusionMask& mask)
+{
+  clear();
+  centre_ = frame.centre();
+  const cv::Rect box = viewBox({frame.width(), frame.height()}, {}, centre_);
+  for (int row = box.y; row < box.br().y; ++row) blendRow(frame, mask, {}, row, 0.0F);
+  for (int phase = 0; phase < kBlockHeight; ++phase) chooseTemplate(box, kBlockHeight, phase);
+}
+
+void Mosaic::blend(const Frame& frame, const OcclusionMask& mask, const retina::Pose2& map_T_frame, double sigma,
+                   std::int64_t number)
+{
+  const int period = number < options_.settled_frame ? options_.row_period : options_.settled_row_period;
+  const int phase = static_cast<int>(number % period);
+  const double limit = std::max(options_.outlier_sigmas * sigma, options_.outlier_contrast * Frame::kContrastUnit);
+  const cv::Rect box = viewBox({frame.width(), frame.height()}, map_T_frame, centre_);
+  const retina::Pose2 frame_T_map = map_T_frame.inverse();
+  for (int row = box.y; row < box.br().y; ++row) {
+    if (row - floorDivide(row, period) * period == phase) {
+      blendRow(frame, mask, frame_T_map, row, static_cast<float>(limit));
+    }
+  }
+  chooseTemplate(box, period, phase);
+}
+
+void Mosaic::blendRow(const Frame& frame, const OcclusionMask& mask, const retina::Pose2& frame_T_map, int row,
+                      float limit)
+{
+  // Along a mosaic row the position in the frame moves by a constant step.
+  const Eigen::Matrix2d linear = frame_T_map.linear();
+  const Eigen::Vector2d start = frame_T_map * Eigen::Vector2d(-centre_.x(), row - centre_.y()) + frame.centre();
+  const Eigen::Vector2d step = linear.col(0);
+  double from = -kReach, to = kReach;
+  constexpr double kMargin = CubicSampler::kMargin;
+  clip(start.x(), step.x(), kMargin, frame.width() - 1 - kMargin, from, to);
+  clip(start.y(), step.y(), kMargin, frame.height() - 1 - kMargin, from, to);
+
+  const CubicSampler sample(frame.contrast());
+  const cv::Mat_<std::uint8_t>& hidden = mask.cells();
+  Tile* tile = nullptr;
+  int tile_x = 0;
+  const int ty = floorDivide(row, kTile);
+  const auto most = static_cast<std::uint8_t>(options_.most_samples);
+  for (int i = static_cast<int>(std::ceil(from)); i <= static_cast<int>(std::floor(to)); ++i) {
+    const auto x = static_cast<float>(start.x() + i * step.x());
+    const auto y = static_cast<float>(start.y() + i * step.y());
+    if (hidden(static_cast<int>(y + 0.5F) / Frame::kCell, static_cast<int>(x + 0.5F) / Frame::kCell)) continue;
+    const int tx = floorDivide(i, kTile);
+    if (!tile || tx != tile_x) {
+      tile = &tiles_.at(tx, ty);
+      tile_x = tx;
+      ++tile->version;
+    }
+    const auto at = static_cast<std::size_t>((row - ty * kTile) * kTile + i - tx * kTile);
+    const float value = sample(x, y);
+    const float difference = value - tile->mean[at];
+    std::uint8_t& count = tile->count[at];
+    if (count > 0 && limit > 0.0F && std::abs(difference) > limit) {
+      --count;  // what stays different is accepted once it has outvoted what was there
+      continue;
+    }
+    if (count < most) ++count;
+    tile->mean[at] += difference / static_cast<float>(count);
+  }
+}
+
+void Mosaic::chooseTemplate(const cv::Rect& box, int period, int phase)
+{
+  for (int block = floorDivide(box.y, kBlockHeight); block <= floorDivide(box.br().y - 1, kBlockHeight); ++block) {
+    // Only blocks that took a row this time.
+    const int first = block * kBlockHeight;
+    const int offset = phase - (first - floorDivide(first, period) * period);
+    const bool touched = period <= kBlockHeight || (offset >= 0 && offset < kBlockHeight);
+    if (!touched) continue;
+    const int ty = floorDivide(first, kTile);
+    for (int tx = floorDivide(box.x, kTile); tx <= floorDivide(box.br().x - 1, kTile); ++tx) {
+      if (Tile* tile = tiles_.find(tx, ty)) chooseInBlockRow(*tile, tx, ty, (first - ty * kTile) / kBlockHeight);
+    }
+  }
+}
+
+void Mosaic::gatherStrip(int tx, int ty, int block_row)
+{
+  for (int r = 0; r < kStripHeight; ++r) {
+    const int row = block_row * kBlockHeight + r - 1;
+    const int from_ty = row < 0 ? ty - 1 : (row >= kTile ? ty + 1 : ty);
+    const int y = (row + kTile) % kTile;
+    float* values = strip_.data() + r * kStripWidth;
+    std::uint8_t* counts = strip_count_.data() + r * kStripWidth;
+    const auto copy = [&](int source_tx, int x, int count, int to) {
+      const Tile* tile = tiles_.find(source_tx, from_ty);
+      if (!tile) {
+        std::fill_n(values + to, count, 0.0F);
+        std::fill_n(counts + to, count, std::uint8_t{0});
+        return;
+      }
+      const std::size_t at = static_cast<std::size_t>(y * kTile + x);
+      std::copy_n(tile->mean.data() + at, count, values + to);
+      std::copy_n(tile->count.data() + at, count, counts + to);
+    };
+    copy(tx - 1, kTile - 1, 1, 0);
+    copy(tx, 0, kTile, 1);
+    copy(tx + 1, 0, 1, kTile + 1);
+  }
+}
+
+void Mosaic::chooseInBlockRow(Tile& tile, int tx, int ty, int block_row)
+{
+  gatherStrip(tx, ty, block_row);
+  std::array<float, kTile> gx, gy, strength;
+  std::array<std::uint8_t, kTile> known;
+  std::array<TemplatePixel, kBlocksAcross> best{};
+  std::array<float, kBlocksAcross> most;
+  most.fill(static_cast<float>(options_.least_gradient * options_.least_gradient) * Frame::kContrastUnit *
+            Frame::kContrastUnit);
+  for (int r = 1; r <= kBlockHeight; ++r) {
+    const std::uint8_t* above = strip_count_.data() + (r - 1) * kStripWidth;
+    for (int i = 0; i < kTile; ++i) {
+      bool all = true;
+      for (int v = 0; v < 3; ++v) {
+        const std::uint8_t* at = above + v * kStripWidth + i;
+        all &= (at[0] > 0) & (at[1] > 0) & (at[2] > 0);
+      }
+      known[static_cast<std::size_t>(i)] = all;
+    }
+    const float* middle = strip_.data() + r * kStripWidth;
+    gradientRow(middle - kStripWidth, middle, middle + kStripWidth, known.data(), gx.data(), gy.data(),
+                strength.data());
+    for (std::size_t i = 0; i < kTile; ++i) {
+      const std::size_t block = i / kBlockWidth;
+      if (strength[i] <= most[block]) continue;
+      most[block] = strength[i];
+      best[block] = {static_cast<float>(tx * kTile + static_cast<int>(i)),
+                     static_cast<float>(ty * kTile + block_row * kBlockHeight + r - 1),
+                     middle[i + 1],
+                     gx[i],
+                     gy[i],
+                     true};
+    }
+  }
+  std::copy(best.begin(), best.end(), tile.pixels.begin() + block_row * kBlocksAcross);
+}
+
+cv::Rect Mosaic::bounds() const
+{
+  return {cv::Point(tiles_.firstX() * kTile, tiles_.firstY() * kTile),
+          cv::Point(tiles_.endX() * kTile, tiles_.endY() * kTile)};
+}
+
+void Mosaic::read(const cv::Rect& region, cv::Mat_<std::int16_t>& mean, cv::Mat_<std::uint8_t>& count) const
+{
+  mean.create(region.height, region.width);
+  count.create(region.height, region.width);
+  mean.setTo(0);
+  count.setTo(0);
+  for (int ty = floorDivide(region.y, kTile); ty <= floorDivide(region.br().y - 1, kTile); ++ty) {
+    for (int tx = floorDivide(region.x, kTile); tx <= floorDivide(region.br().x - 1, kTile); ++tx) {
+      const Tile* tile = tiles_.find(tx, ty);
+      if (!tile) continue;
+      const cv::Rect part = region & cv::Rect(tx * kTile, ty * kTile, kTile, kTile);
+      for (int y = part.y; y < part.br().y; ++y) {
+        for (int x = part.x; x < part.br().x; ++x) {
+          const auto at = static_cast<std::size_t>((y - ty * kTile) * kTile + x - tx * kTile);
+          mean(y - region.y, x - region.x) = static_cast<std::int16_t>(std::lround(tile->mean[at]));
+          count(y - region.y, x - region.x) = tile->count[at];
+        }
+      }
+    }
+  }
+}
+
+}  // namespace eyeslam::tracking

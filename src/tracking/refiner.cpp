@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eyeslam/tracking/refiner.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "eyeslam/tracking/vector_kernel.h"
+
+namespace eyeslam::tracking {
+
+namespace {
+
+constexpr std::size_t kSums = 14;  // ten of the information's upper half, four of the gradient
+constexpr std::size_t kLaneCount = 8;
+constexpr float kOutside = 1e6F;  // residual of a pixel that left the frame: beyond every cut
+
+// Weighted sums over lanes; an associative order of our own, since the compiler may not choose one for floats.
+EYESLAM_VECTOR_KERNEL void accumulateLanes(const float* r, const float* jx, const float* jy, const float* jt,
+                                           const float* js, std::size_t blocks, float inverse_cut, float* sums)
+{
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::size_t at = b * kLaneCount;
+    for (std::size_t k = 0; k < kLaneCount; ++k) {
+      const float ratio = r[at + k] * inverse_cut;
+      const float inside = std::max(0.0F, 1.0F - ratio * ratio);
+      const float w = inside * inside;
+      const float wx = w * jx[at + k], wy = w * jy[at + k], wt = w * jt[at + k], ws = w * js[at + k];
+      sums[k] += wx * jx[at + k];
+      sums[1 * kLaneCount + k] += wx * jy[at + k];
+      sums[2 * kLaneCount + k] += wx * jt[at + k];
+      sums[3 * kLaneCount + k] += wx * js[at + k];
+      sums[4 * kLaneCount + k] += wy * jy[at + k];
+      sums[5 * kLaneCount + k] += wy * jt[at + k];
+      sums[6 * kLaneCount + k] += wy * js[at + k];
+      sums[7 * kLaneCount + k] += wt * jt[at + k];
+      sums[8 * kLaneCount + k] += wt * js[at + k];
+      sums[9 * kLaneCount + k] += ws * js[at + k];
+      sums[10 * kLaneCount + k] += wx * r[at + k];
+      sums[11 * kLaneCount + k] += wy * r[at + k];
+      sums[12 * kLaneCount + k] += wt * r[at + k];
+      sums[13 * kLaneCount + k] += ws * r[at + k];
+    }
+  }
+}
+
+// Distance that a step moves the pixels at a typical radius.
+double length(const Eigen::Vector4d& step, double radius)
+{
+  return std::max(step.head<2>().norm(), radius * std::hypot(step[2], step[3]));
+}
+
+}  // namespace
+
+Refiner::Refiner(const RefinerOptions& options) : options_(options) {}
+
+void Refiner::computeResiduals(const CubicSampler& sample, const cv::Size& size, const AlignmentTemplate& pixels,
+                               const retina::Pose2& pose, std::size_t stride)
+{
+  const std::size_t used = (pixels.size() + stride - 1) / stride;
+  const std::size_t padded = (used + kLanes - 1) / kLanes * kLanes;
+  for (auto* field : {&residual_, &value_, &jx_, &jy_, &jt_, &js_}) field->resize(padded);
+  const Eigen::Matrix2f linear = pose.inverse().linear().cast<float>();
+  const auto tx = static_cast<float>(pose.x), ty = static_cast<float>(pose.y);
+  const float cx = static_cast<float>(size.width - 1) / 2.0F, cy = static_cast<float>(size.height - 1) / 2.0F;
+  constexpr float kMargin = CubicSampler::kMargin;
+  const float right = static_cast<float>(size.width - 1) - kMargin - 0.01F;
+  const float bottom = static_cast<float>(size.height - 1) - kMargin - 0.01F;
+  const auto inverse_scale = static_cast<float>(1.0 / pose.scale);
+  for (std::size_t i = 0; i < used; ++i) {
+    const std::size_t at = i * stride;
+    const float ux = pixels.x[at] - tx, uy = pixels.y[at] - ty;
+    const float px = linear(0, 0) * ux + linear(0, 1) * uy + cx;
+    const float py = linear(1, 0) * ux + linear(1, 1) * uy + cy;
+    const bool inside = px >= kMargin && py >= kMargin && px <= right && py <= bottom;
+    const float gx = pixels.gx[at], gy = pixels.gy[at];
+    value_[i] = pixels.value[at];
+    residual_[i] = inside ? sample(px, py) - value_[i] : kOutside;
+    jx_[i] = -gx;
+    jy_[i] = -gy;
+    jt_[i] = -(gy * ux - gx * uy);
+    js_[i] = -(gx * ux + gy * uy) * inverse_scale;
+  }
+  for (std::size_t i = used; i < padded; ++i) {
+    residual_[i] = kOutside;
+    value_[i] = jx_[i] = jy_[i] = jt_[i] = js_[i] = 0.0F;
+  }
+}
+
+double Refiner::robustSigma() const
+{
+  // The median from a histogram of bins of two contrast units.
+  constexpr float kBin = 2.0F;
+  histogram_.fill(0);
+  int total = 0;
+  for (const float r : residual_) {
+    if (r >= kOutside) continue;
+    ++histogram_[std::min(histogram_.size() - 1, static_cast<std::size_t>(std::abs(r) / kBin))];
+    ++total;
+  }
+  double median = 0.0;
+  for (int below = 0, bin = 0; 2 * below < total; ++bin) {
+    const int here = histogram_[static_cast<std::size_t>(bin)];
+    if (2 * (below + here) >= total) median = kBin * (bin + (0.5 * total - below) / here);
+    below += here;
+  }
+  constexpr double kNormal = 1.4826;  // median absolute deviation of a unit normal
+  return std::max(kNormal * median, options_.least_sigma * Frame::kContrastUnit);
+}
+
+Refiner::NormalEquations Refiner::accumulate(std::size_t begin, std::size_t end, double cut) const
+{
+  // Whole blocks of lanes, then the rest one by one, so that clusters of any length can be summed.
+  std::array<float, kSums * kLanes> sums{};
+  const std::size_t blocks = (end - begin) / kLanes;
+  const auto inverse_cut = static_cast<float>(1.0 / cut);
+  const auto from = [&](const std::vector<float>& field) { return field.data() + begin; };
+  accumulateLanes(from(residual_), from(jx_), from(jy_), from(jt_), from(js_), blocks, inverse_cut, sums.data());
+  std::array<double, kSums> total{};
+  for (std::size_t s = 0; s < kSums; ++s) {
+    for (std::size_t k = 0; k < kLanes; ++k) total[s] += static_cast<double>(sums[s * kLanes + k]);
+  }
+  for (std::size_t i = begin + blocks * kLanes; i < end; ++i) {
+    const double ratio = static_cast<double>(residual_[i]) / cut;
+    const double inside = std::max(0.0, 1.0 - ratio * ratio);
+    const Eigen::Vector4d j(jx_[i], jy_[i], jt_[i], js_[i]);
+    std::size_t s = 0;
+    for (int a = 0; a < 4; ++a) {
+      for (int b = a; b < 4; ++b) total[s++] += inside * inside * j[a] * j[b];
+    }
+    for (int a = 0; a < 4; ++a) total[s++] += inside * inside * j[a] * static_cast<double>(residual_[i]);
+  }
+  NormalEquations result;
+  std::size_t s = 0;
+  for (int a = 0; a < 4; ++a) {
+    for (int b = a; b < 4; ++b) result.information(a, b) = result.information(b, a) = total[s++];
+  }
+  for (int a = 0; a < 4; ++a) result.gradient[a] = total[s++];
+  return result;
+}
+
+double Refiner::correlation() const
+{
+  double n = 0.0, a = 0.0, b = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
+  for (std::size_t i = 0; i < residual_.size(); ++i) {
+    if (residual_[i] >= kOutside) continue;
+    const double u = value_[i];
+    const double v = u + static_cast<double>(residual_[i]);
+    n += 1.0;
+    a += u;
+    b += v;
+    aa += u * u;
+    bb += v * v;
+    ab += u * v;
+  }
+  const double power = (n * aa - a * a) * (n * bb - b * b);
+  return power > 0.0 ? (n * ab - a * b) / std::sqrt(power) : 0.0;
+}
+
+// The sandwich estimate: residuals of one cluster may be alike (compressed blocks, texture that moved), so each
+// cluster counts as one observation; the usual (J'WJ)^-1 is 2 to 4 times too small (tracker study, 2.10).
+Eigen::Matrix4d Refiner::covarianceOf(const AlignmentTemplate& pixels, const NormalEquations& all, double cut,
+                                      Freedom freedom) const
+{
+  const int n = freedom == Freedom::rigid ? 3 : 4;
+  Eigen::Matrix4d scatter = Eigen::Matrix4d::Zero();
+  const std::size_t clusters = pixels.cluster_begins.size();
+  for (std::size_t c = 0; c < clusters; ++c) {
+    const Eigen::Vector4d g = accumulate(pixels.cluster_begins[c], pixels.clusterEnd(c), cut).gradient;
+    scatter += g * g.transpose();
+  }
+  const double freedoms = std::max(1.0, static_cast<double>(clusters) - n);
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+  const Eigen::MatrixXd::Index size = n;
+  const Eigen::LDLT<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 4, 4>> solver(
+      all.information.topLeftCorner(size, size));
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 4, 4> inverse =
+      solver.solve(Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 4, 4>::Identity(size, size));
+  covariance.topLeftCorner(size, size) =
+      inverse * scatter.topLeftCorner(size, size) * inverse * (static_cast<double>(clusters) / freedoms);
+  return covariance;
+}
+
+Refinement Refiner::refine(const cv::Mat_<std::int16_t>& contrast, const AlignmentTemplate& pixels,
+                           const retina::Pose2& start, Freedom freedom, double scale_sigma)
+{
+  Refinement result;
+  result.map_T_frame = start;
+  result.pixels = static_cast<int>(pixels.size());
+  if (result.pixels < options_.least_pixels) return result;
+  const CubicSampler sample(contrast);
+  const double radius = 0.25 * (contrast.cols + contrast.rows);
+  const int n = freedom == Freedom::rigid ? 3 : 4;
+  retina::Pose2& pose = result.map_T_frame;
+  NormalEquations normal;
+  double cut = 0.0;
+  int coarse_left = options_.coarse_steps;
+  for (int step = 0; step < options_.most_steps; ++step) {
+    const bool coarse = coarse_left > 0;
+    computeResiduals(sample, contrast.size(), pixels, pose,
+                     coarse ? static_cast<std::size_t>(options_.coarse_stride) : 1);
+    result.sigma = robustSigma();
+    cut = (step == 0 ? options_.first_cut_sigmas : options_.cut_sigmas) * result.sigma;
+    normal = accumulate(0, residual_.size(), cut);
+    Eigen::Matrix4d information = normal.information;
+    Eigen::Vector4d gradient = normal.gradient;
+    if (freedom == Freedom::similarity) {
+      const double weight = result.sigma * result.sigma / (scale_sigma * scale_sigma);
+      information(3, 3) += weight;
+      gradient[3] += weight * (pose.scale - start.scale);
+    } else {
+      information.row(3).setZero();
+      information.col(3).setZero();
+      information(3, 3) = 1.0;
+      gradient[3] = 0.0;
+    }
+    const Eigen::LDLT<Eigen::Matrix4d> solver(information);
+    const Eigen::Vector4d move = -solver.solve(gradient);
+    if (solver.info() != Eigen::Success || !solver.isPositive() || !move.allFinite()) return result;
+    pose.x += move[0];
+    pose.y += move[1];
+    pose.theta += move[2];
+    pose.scale += move[3];
+    if (!(pose.scale > 0.2 && pose.scale < 5.0)) return result;
+    const double moved = length(move, radius);
+    if (coarse) {
+      coarse_left = moved < options_.coarse_step_px ? 0 : coarse_left - 1;
+    } else if (moved < options_.last_step_px) {
+      break;
+    }
+  }
+  (void)n;
+  computeResiduals(sample, contrast.size(), pixels, pose, 1);
+  result.sigma = robustSigma();
+  cut = options_.cut_sigmas * result.sigma;
+  normal = accumulate(0, residual_.size(), cut);
+  result.ncc = correlation();
+  result.covariance = covarianceOf(pixels, normal, cut, freedom);
+  result.converged = result.covariance.allFinite();
+  return result;
+}
+
+}  // namespace eyeslam::tracking

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "eyeslam/retina/options.h"
+#include "eyeslam/tracking/frame.h"
+#include "eyeslam/tracking/mosaic.h"
+#include "eyeslam/tracking/occlusion_mask.h"
+#include "eyeslam/tracking/occupancy_map.h"
+#include "eyeslam/tracking/point_selector.h"
+#include "eyeslam/tracking/pose_filter.h"
+#include "eyeslam/tracking/refiner.h"
+#include "eyeslam/tracking/relocalizer.h"
+#include "eyeslam/tracking/ridge_detector.h"
+#include "eyeslam/tracking/scan_matcher.h"
+
+namespace eyeslam::tracking {
+
+/// How a match is verified against the mosaic (tracker study, 2.8 and 2.10).
+struct LocalizerOptions {
+  double least_visible = 0.10;
+  int least_red = 30;
+  double least_ncc = 0.4;
+  double wide_ncc_share = 0.65;
+  int wide_cells = 40;
+  int wide_steps = 8;
+  int wide_points = 250;
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& visitor)
+  {
+    using retina::Range;
+    visitor.field("least_visible", self.least_visible, Range{0.0, 1.0}, "of the frame",
+                  "with less retina in view the frame is a blackout; source: tracker study 2.3");
+    visitor.field("least_red", self.least_red, Range{0, 255}, "grey levels",
+                  "with a lower median red the frame is a blackout; source: tracker study 2.3");
+    visitor.field("least_ncc", self.least_ncc, Range{0.0, 1.0}, "",
+                  "correlation of frame and mosaic below which a pose is wrong; source: tracker study 2.10");
+    visitor.field("wide_ncc_share", self.wide_ncc_share, Range{0.0, 1.0}, "of the running mean",
+                  "what the wide searches must reach, or they go on; source: tracker study 2.10");
+    visitor.field("wide_cells", self.wide_cells, Range{4, 500}, "cells",
+                  "half window of the second search; source: tracker study 2.8");
+    visitor.field("wide_steps", self.wide_steps, Range{1, 90}, "angular steps of one cell at the corner",
+                  "half window of the second search; source: tracker study 2.8");
+    visitor.field("wide_points", self.wide_points, Range{30, 5000}, "points", "source: tracker study 2.8");
+  }
+};
+
+/// Every option of the tracker, a group for each step.
+struct TrackerOptions {
+  std::string detector = "ridge";
+  FrameOptions frame;
+  OcclusionMaskOptions occlusion;
+  RidgeDetectorOptions ridge;
+  PointSelectorOptions selector;
+  ScanMatcherOptions matcher;
+  RelocalizerOptions relocalizer;
+  LocalizerOptions localizer;
+  RefinerOptions refiner;
+  PoseFilterOptions filter;
+  OccupancyMapOptions occupancy;
+  MosaicOptions mosaic;
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& visitor)
+  {
+    visitor.choice("detector", self.detector, {"ridge", "tracing"},
+                   "what finds vessel points; source: docs/results.md, the better one per microsecond");
+    visitor.group("frame", self.frame);
+    visitor.group("occlusion", self.occlusion);
+    visitor.group("ridge", self.ridge);
+    visitor.group("selector", self.selector);
+    visitor.group("matcher", self.matcher);
+    visitor.group("relocalizer", self.relocalizer);
+    visitor.group("localizer", self.localizer);
+    visitor.group("refiner", self.refiner);
+    visitor.group("filter", self.filter);
+    visitor.group("occupancy", self.occupancy);
+    visitor.group("mosaic", self.mosaic);
+  }
+};
+
+}  // namespace eyeslam::tracking
