@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eyeslam/simulation/microscope.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "eyeslam/simulation/retina_sampler.h"
+
+namespace eyeslam::simulation {
+
+namespace {
+
+constexpr double kTwoPi = 6.28318530717958647693;
+constexpr int kMostSubExposures = 32;
+constexpr double kSubExposure_px = 2.0;  // the retina moves no more between two of them: under the optics' blur
+constexpr double kSeen = 0.5;            // of the light: below it the retina counts as hidden
+
+double travel(const retina::Pose2& a, const retina::Pose2& b, const cv::Size& view)
+{
+  const double corner = 0.5 * std::hypot(view.width, view.height);
+  return std::hypot(b.x - a.x, b.y - a.y) + corner * (std::abs(b.theta - a.theta) + std::abs(b.scale - a.scale));
+}
+
+}  // namespace
+
+Microscope::Microscope(const MicroscopeOptions& options, const View& view, cv::Mat canvas, cv::Point2d map_origin,
+                       std::uint64_t seed)
+    : optics_(options.optics),
+      view_(view),
+      illumination_(options.illumination, view.size, view.px_scale, view.duration_s, seed),
+      blooms_(options.blooms, view.size, view.px_scale, view.duration_s, seed),
+      instrument_(options.instrument, view.size, view.px_scale, view.duration_s, seed),
+      laser_(options.laser, view.px_scale),
+      sensor_(options.sensor, seed),
+      canvas_(std::move(canvas)),
+      map_origin_(map_origin),
+      focus_phase_(Random(seed, 16).uniform(0.0, kTwoPi)),
+      picture_(view.size, CV_32FC4)
+{}
+
+RenderedFrame Microscope::expose(int frame, const EyeMotion& motion)
+{
+  RenderedFrame result;
+  result.frame = frame;
+  result.t_s = frame / view_.fps;
+  result.map_T_frame = motion.at(result.t_s);
+  result.tool = instrument_.at(result.t_s);
+  exposeRetina(result.t_s, motion);
+  defocus(result.t_s);
+  develop(result.t_s, result.tool, result);
+  sensor_.read(picture_, result.image);
+  fire(result);
+  if (!result.tool.present) result.tool.tip = {};
+  return result;
+}
+
+// The mean over the exposure along the true motion, its middle at the frame's time.
+void Microscope::exposeRetina(double t, const EyeMotion& motion)
+{
+  const double exposure = optics_.exposure_ms * 1e-3;
+  const double moved = travel(motion.at(t - exposure / 2), motion.at(t), view_.size) +
+                       travel(motion.at(t), motion.at(t + exposure / 2), view_.size);
+  const int parts =
+      std::clamp(static_cast<int>(std::ceil(moved / (kSubExposure_px * view_.px_scale))), 1, kMostSubExposures);
+  picture_.setTo(cv::Scalar::all(0.0));
+  for (int i = 0; i < parts; ++i) {
+    const double instant = t + exposure * ((i + 0.5) / parts - 0.5);
+    accumulateView(canvas_, {motion.at(instant), motion.warpAt(instant), map_origin_}, 1.0F / static_cast<float>(parts),
+                   picture_);
+  }
+}
+
+void Microscope::defocus(double t)
+{
+  const double change = optics_.defocus_change_px * std::sin(kTwoPi * 0.09 * t + focus_phase_);
+  const double sigma = std::max(0.0, optics_.defocus_px + change) * view_.px_scale;
+  if (sigma > 0.15) cv::GaussianBlur(picture_, picture_, {}, sigma, sigma, cv::BORDER_REPLICATE);
+}
+
+void Microscope::develop(double t, const InstrumentPose& tool, RenderedFrame& result)
+{
+  illumination_.lightAt(t, light_);
+  instrument_.castShadow(tool, light_);
+  const cv::Vec4f white(static_cast<float>(optics_.white_blue), static_cast<float>(optics_.white_green),
+                        static_cast<float>(optics_.white_red), 0.0F);
+  const auto veil = static_cast<float>(optics_.veil);
+  for (int y = 0; y < picture_.rows; ++y) {
+    auto* pixel = picture_.ptr<cv::Vec4f>(y);
+    for (int x = 0; x < picture_.cols; ++x) pixel[x] = pixel[x].mul(white * light_(y, x)) + cv::Vec4f::all(veil);
+  }
+  const int covered = instrument_.draw(tool, illumination_.field(), picture_);
+  result.tool_cover = static_cast<double>(covered) / static_cast<double>(view_.size.area());
+  if (tool.present) laser_.addSpot(picture_, tool.tip, result.frame);
+  blooms_.addTo(picture_, t);
+  const double on = illumination_.switchedOn(t);
+  result.visible = on >= kSeen;
+  for (int y = 0; y < picture_.rows; ++y) {
+    auto* pixel = picture_.ptr<cv::Vec4f>(y);
+    for (int x = 0; x < picture_.cols; ++x) pixel[x] *= static_cast<float>(on) * illumination_.field()(y, x);
+  }
+}
+
+// After the frame: the retina whitens while the pulse goes on, so the burn shows from the next frame.
+void Microscope::fire(RenderedFrame& result)
+{
+  if (!laser_.fires(result.frame) || !result.tool.present) return;
+  const Eigen::Vector2d centre((view_.size.width - 1) / 2.0, (view_.size.height - 1) / 2.0);
+  const Eigen::Vector2d tip(result.tool.tip.x, result.tool.tip.y);
+  const Eigen::Vector2d map = centre + result.map_T_frame * (tip - centre);
+  laser_.burn(canvas_, {map.x() - map_origin_.x, map.y() - map_origin_.y});
+  result.fired = true;
+}
+
+}  // namespace eyeslam::simulation

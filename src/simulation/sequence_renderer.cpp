@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eyeslam/simulation/sequence_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "eyeslam/simulation/view_planner.h"
+
+namespace eyeslam::simulation {
+
+namespace {
+
+constexpr double kUsualWidth_px = 800.0;
+constexpr double kTwoPi = 6.28318530717958647693;
+
+// Dots of three inks in rows at their usual angles; the finest a magnified print shows.
+void printScreen(cv::Mat_<cv::Vec3f>& bgr, double strength)
+{
+  constexpr double kPeriod_px = 3.7;
+  constexpr std::array<double, 3> kAngles = {0.0, 1.309, 0.262};
+  for (int y = 0; y < bgr.rows; ++y) {
+    for (int x = 0; x < bgr.cols; ++x) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double u = (x * std::cos(kAngles[c]) + y * std::sin(kAngles[c])) * kTwoPi / kPeriod_px;
+        const double v = (y * std::cos(kAngles[c]) - x * std::sin(kAngles[c])) * kTwoPi / kPeriod_px;
+        bgr(y, x)[static_cast<int>(c)] *= static_cast<float>(1.0 + strength * 0.5 * (std::sin(u) + std::sin(v)));
+      }
+    }
+  }
+}
+
+cv::Mat canvasOf(const Fundus& fundus, cv::Rect area)
+{
+  cv::Mat canvas(area.size(), CV_32FC4);
+  for (int y = 0; y < area.height; ++y) {
+    for (int x = 0; x < area.width; ++x) {
+      const cv::Vec3f& colour = fundus.bgr(area.y + y, area.x + x);
+      canvas.at<cv::Vec4f>(y, x) = cv::Vec4f(colour[0], colour[1], colour[2], 0.0F);
+    }
+  }
+  return canvas;
+}
+
+Fundus prepared(const Fundus& fundus, const TissueOptions& tissue, double zoom)
+{
+  Fundus result = std::abs(zoom - 1.0) < 1e-9 ? fundus : resampled(fundus, zoom);
+  if (!tissue.textured) result = withoutTexture(result);
+  if (tissue.contrast != 1.0) result = withContrast(result, tissue.contrast);
+  if (tissue.screen > 0.0) {
+    result.bgr = result.bgr.clone();
+    printScreen(result.bgr, tissue.screen);
+  }
+  return result;
+}
+
+}  // namespace
+
+struct SequenceRenderer::Scene {
+  double um_per_px, zoom;
+  EyeMotion motion;
+  cv::Mat_<float> vessels;
+  cv::Mat canvas;
+  cv::Point2d map_origin;
+
+  static Scene plan(const Fundus& fundus, const Condition& condition, const SequenceOptions& options)
+  {
+    const double um = umPerPixel(condition.tissue, options);
+    const double zoom = fundus.um_per_px / um;
+    const double px_scale = options.size.width / kUsualWidth_px;
+    EyeMotion motion(condition.motion, px_scale * condition.motion_factor, options.frames / options.fps, options.seed);
+    const Fundus retina = prepared(fundus, condition.tissue, zoom);
+    const double rim = condition.microscope.illumination.rim_radius_px * px_scale;
+    const ViewPlan view = planView(retina, motion, {options.size, options.fps, options.frames, rim, options.seed});
+    const cv::Point2d centre((options.size.width - 1) / 2.0, (options.size.height - 1) / 2.0);
+    const cv::Point2d origin = cv::Point2d(view.area.tl()) + centre - cv::Point2d(view.start);
+    return {um, zoom, std::move(motion), retina.calibre_px(view.area).clone(), canvasOf(retina, view.area), origin};
+  }
+};
+
+double umPerPixel(const TissueOptions& tissue, const SequenceOptions& options)
+{
+  const double spread = Random(options.seed, 18).uniform(-tissue.um_per_px_spread, tissue.um_per_px_spread);
+  const double wider = options.size.width / kUsualWidth_px;
+  return tissue.um_per_px * (1.0 + spread) / (wider < 1.0 ? wider : std::sqrt(wider));
+}
+
+SequenceRenderer::SequenceRenderer(const Fundus& fundus, const Condition& condition, const SequenceOptions& options)
+    : SequenceRenderer(Scene::plan(fundus, condition, options), condition, options)
+{}
+
+SequenceRenderer::SequenceRenderer(Scene scene, const Condition& condition, const SequenceOptions& options)
+    : options_(options),
+      um_per_px_(scene.um_per_px),
+      zoom_(scene.zoom),
+      motion_(std::move(scene.motion)),
+      vessels_(scene.vessels),
+      map_origin_(scene.map_origin),
+      microscope_(condition.microscope,
+                  {options.size, options.size.width / kUsualWidth_px, options.fps, options.frames / options.fps},
+                  scene.canvas, scene.map_origin, options.seed)
+{}
+
+std::optional<RenderedFrame> SequenceRenderer::next()
+{
+  if (frame_ >= options_.frames) return std::nullopt;
+  return microscope_.expose(frame_++, motion_);
+}
+
+std::optional<SequenceRenderer::Rim> SequenceRenderer::rim() const
+{
+  const Illumination& light = microscope_.illumination();
+  if (!light.hasRim()) return std::nullopt;
+  return Rim{light.rimCentre().x, light.rimCentre().y, light.rimRadius()};
+}
+
+}  // namespace eyeslam::simulation

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eyeslam/simulation/specular_blooms.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "eyeslam/simulation/random.h"
+
+namespace eyeslam::simulation {
+
+namespace {
+
+constexpr double kTwoPi = 6.28318530717958647693;
+constexpr double kGlowReach = 3.6;  // of the core's radius; beyond it the glow is below a grey level
+
+double fading(double t, double from_s, double to_s)
+{
+  return std::clamp(4.0 * std::min(t - from_s, to_s - t), 0.0, 1.0);
+}
+
+}  // namespace
+
+SpecularBlooms::SpecularBlooms(const SpecularBloomsOptions& options, cv::Size view, double px_scale, double duration_s,
+                               std::uint64_t seed)
+{
+  Random random(seed, 15);
+  for (int i = 0; i < options.count; ++i) {
+    Bloom bloom{};
+    bloom.place = {view.width * random.uniform(0.2, 0.8), view.height * random.uniform(0.1, 0.9)};
+    bloom.radius = random.uniform(options.smallest_px, options.largest_px) * px_scale;
+    bloom.wander = options.wander_px * px_scale * random.uniform(0.4, 1.0);
+    bloom.phase_x = random.uniform(0.0, kTwoPi);
+    bloom.phase_y = random.uniform(0.0, kTwoPi);
+    bloom.hz = random.uniform(0.08, 0.3);
+    // Two in three stay; the others come and go with the tilt of the eye.
+    const bool stays = random.chance(0.67);
+    bloom.from_s = stays ? -1.0 : random.uniform(0.0, 0.7) * duration_s;
+    bloom.to_s = stays ? duration_s + 1.0 : bloom.from_s + random.uniform(0.1, 0.5) * duration_s;
+    blooms_.push_back(bloom);
+  }
+}
+
+void SpecularBlooms::addTo(cv::Mat& picture, double t) const
+{
+  for (const Bloom& bloom : blooms_) {
+    const double bright = fading(t, bloom.from_s, bloom.to_s);
+    if (bright <= 0.0) continue;
+    const cv::Point2d centre =
+        bloom.place + bloom.wander * cv::Point2d(std::sin(kTwoPi * bloom.hz * t + bloom.phase_x),
+                                                 std::sin(kTwoPi * 1.3 * bloom.hz * t + bloom.phase_y));
+    addGlow(picture, centre, bloom.radius * (0.7 + 0.3 * bright), cv::Scalar::all(bright));
+  }
+}
+
+void addGlow(cv::Mat& picture, cv::Point2d centre, double radius, const cv::Scalar& colour)
+{
+  const double reach = kGlowReach * radius;
+  const cv::Rect area = cv::Rect(cv::Point(cvFloor(centre.x - reach), cvFloor(centre.y - reach)),
+                                 cv::Point(cvCeil(centre.x + reach) + 1, cvCeil(centre.y + reach) + 1)) &
+                        cv::Rect({0, 0}, picture.size());
+  for (int y = area.y; y < area.y + area.height; ++y) {
+    for (int x = area.x; x < area.x + area.width; ++x) {
+      const double square = ((x - centre.x) * (x - centre.x) + (y - centre.y) * (y - centre.y)) / (radius * radius);
+      // A saturated core (4 white at its middle falls to white at its radius) and a faint glow.
+      const double light = 4.0 * std::exp(-1.5 * square) + 0.25 * std::exp(-0.45 * square);
+      auto& pixel = picture.at<cv::Vec4f>(y, x);
+      for (int c = 0; c < 3; ++c) pixel[c] += static_cast<float>(light * colour[c]);
+    }
+  }
+}
+
+}  // namespace eyeslam::simulation
