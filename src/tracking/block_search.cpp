@@ -12,6 +12,9 @@ namespace eyeslam::tracking {
 namespace {
 
 constexpr int kBlock = MaxPooledTables::kBlock;
+constexpr int kSmall = MaxPooledTables::kSmallBlock;
+constexpr int kParts = 5;  // numbers of a large block: itself and its quarters
+constexpr std::uint32_t kUnit = MaxPooledTables::kBoundUnit;
 constexpr int kColumns = 16;       // of the summing kernel
 constexpr int kBoundColumns = 32;  // of the bounding kernel
 constexpr std::size_t kMostRivals = 256;
@@ -45,17 +48,20 @@ void BlockSearch::search(const PoseGrid& grid, const TurnedPoints& points, const
   found_ = false;
   rivals_.clear();
   boundBlocks();
-  std::int64_t operations = limits.operations;
-  while (!heap_.empty() && std::uint32_t{heap_.front().bound} * MaxPooledTables::kBoundUnit >= threshold()) {
-    if (limits.operations >= 0 && (operations -= points.size() * kBlock) < 0) break;
-    const Block block = heap_.front();
-    std::pop_heap(heap_.begin(), heap_.end());
-    heap_.pop_back();
-    open(block);
+  std::int64_t operations = 0;
+  while (!heap_.empty() && heap_.front().bound >= threshold()) {
+    if (limits.operations >= 0 && operations > limits.operations) break;
+    const Block block = pop();
+    const bool is_large = block.number % kParts == 0;
+    if (is_large) {
+      split(block);
+    } else {
+      computeAll(block);
+    }
+    operations += points.size() * (is_large ? kBlock / kSmall : kSmall);
   }
-  complete_ = heap_.empty() || std::uint32_t{heap_.front().bound} * MaxPooledTables::kBoundUnit < threshold();
-  const auto fell_behind = [this](const GridPose& rival) { return rival.sum < threshold(); };
-  rivals_.erase(std::remove_if(rivals_.begin(), rivals_.end(), fell_behind), rivals_.end());
+  complete_ = heap_.empty() || heap_.front().bound < threshold();
+  dropRivalsFallenBehind();
 }
 
 std::uint32_t BlockSearch::threshold() const
@@ -72,8 +78,7 @@ void BlockSearch::boundBlocks()
   bounds_.resize(static_cast<std::size_t>(width * block_rows_));
   offsets_.resize(static_cast<std::size_t>(points_->size()));
   heap_.clear();
-  std::uint32_t index = 0;
-  const std::uint32_t least = (limits_.least_sum + MaxPooledTables::kBoundUnit - 1) / MaxPooledTables::kBoundUnit;
+  std::uint32_t number = 0;
   for (int angle = 0; angle < points_->angles(); ++angle) {
     const int k = points_->firstAngle() + angle;
     for (std::size_t n = 0; n < offsets_.size(); ++n) {
@@ -83,42 +88,79 @@ void BlockSearch::boundBlocks()
     sumBounds(tables_->bounds(), tables_->boundStride(), offsets_.data(), points_->size(), block_rows_, block_columns_,
               bounds_.data(), width);
     for (int row = 0; row < block_rows_; ++row) {
-      for (int column = 0; column < block_columns_; ++column, ++index) {
-        const std::uint16_t bound = bounds_[static_cast<std::size_t>(row * width + column)];
-        if (bound >= least) heap_.push_back({bound, index});
+      for (int column = 0; column < block_columns_; ++column, number += kParts) {
+        const std::uint32_t bound = bounds_[static_cast<std::size_t>(row * width + column)];
+        if (bound * kUnit >= limits_.least_sum) heap_.push_back({bound * kUnit, number});
       }
     }
   }
   std::make_heap(heap_.begin(), heap_.end());
 }
 
-void BlockSearch::open(const Block& block)
+void BlockSearch::push(const Block& block)
 {
-  const int blocks = block_columns_ * block_rows_;
-  const int number = static_cast<int>(block.index);
+  if (block.bound < threshold()) return;
+  heap_.push_back(block);
+  std::push_heap(heap_.begin(), heap_.end());
+}
+
+BlockSearch::Block BlockSearch::pop()
+{
+  const Block block = heap_.front();
+  std::pop_heap(heap_.begin(), heap_.end());
+  heap_.pop_back();
+  return block;
+}
+
+GridPose BlockSearch::firstPose(const Block& block) const
+{
+  const int number = static_cast<int>(block.number / kParts), blocks = block_columns_ * block_rows_;
   GridPose first;
   first.k = points_->firstAngle() + number / blocks;
   first.j = number % blocks / block_columns_ * kBlock - grid_->half_j;
   first.i = number % block_columns_ * kBlock - grid_->half_i;
-  const int stride = static_cast<int>(tables_->stride());
-  for (std::size_t n = 0; n < offsets_.size(); ++n) {
-    offsets_[n] =
-        (points_->cellY(first.k)[n] + first.j - origin_.y) * stride + points_->cellX(first.k)[n] + first.i - origin_.x;
-  }
-  judge(first, std::min(kBlock, grid_->half_i + 1 - first.i), std::min(kBlock, grid_->half_j + 1 - first.j));
+  const int part = static_cast<int>(block.number % kParts);
+  if (part > 2) first.j += kSmall;
+  if (part == 2 || part == 4) first.i += kSmall;
+  return first;
 }
 
-void BlockSearch::judge(const GridPose& first, int columns, int rows)
+void BlockSearch::findOffsets(const GridPose& first)
 {
-  std::array<std::uint32_t, kBlock * kColumns> sums;
+  const int stride = static_cast<int>(tables_->stride());
+  const std::int32_t* x = points_->cellX(first.k);
+  const std::int32_t* y = points_->cellY(first.k);
+  const int shift = (first.j - origin_.y) * stride + first.i - origin_.x;
+  for (std::size_t n = 0; n < offsets_.size(); ++n) offsets_[n] = y[n] * stride + x[n] + shift;
+}
+
+void BlockSearch::split(const Block& block)
+{
+  const GridPose first = firstPose(block);
+  findOffsets(first);
+  std::array<std::uint32_t, 2 * kColumns> bounds;
+  sumSixteenColumns(tables_->smallBounds(), tables_->stride() * kSmall, offsets_.data(), points_->size(), 2,
+                    bounds.data());
+  const bool has_right = first.i + kSmall <= grid_->half_i, has_lower = first.j + kSmall <= grid_->half_j;
+  push({bounds[0], block.number + 1});
+  if (has_right) push({bounds[kSmall], block.number + 2});
+  if (has_lower) push({bounds[kColumns], block.number + 3});
+  if (has_right && has_lower) push({bounds[kColumns + kSmall], block.number + 4});
+}
+
+void BlockSearch::computeAll(const Block& block)
+{
+  const GridPose first = firstPose(block);
+  findOffsets(first);
+  const int columns = std::min(kSmall, grid_->half_i + 1 - first.i),
+            rows = std::min(kSmall, grid_->half_j + 1 - first.j);
+  std::array<std::uint32_t, kSmall * kColumns> sums;
   sumSixteenColumns(tables_->cells(), tables_->stride(), offsets_.data(), points_->size(), rows, sums.data());
-  GridPose best_here;
-  bool any = false;
+  GridPose best_here{first.k, first.j, first.i, sums[0]};
   for (int r = 0; r < rows; ++r) {
     for (int c = 0; c < columns; ++c) {
       const GridPose pose{first.k, first.j + r, first.i + c, sums[static_cast<std::size_t>(r * kColumns + c)]};
-      if (!any || isBetter(pose, best_here)) best_here = pose;
-      any = true;
+      if (isBetter(pose, best_here)) best_here = pose;
     }
   }
   if (best_here.sum < threshold()) return;
@@ -129,11 +171,14 @@ void BlockSearch::judge(const GridPose& first, int columns, int rows)
 
 void BlockSearch::keepRival(const GridPose& pose)
 {
-  if (rivals_.size() == kMostRivals) {
-    const auto fell_behind = [this](const GridPose& rival) { return rival.sum < threshold(); };
-    rivals_.erase(std::remove_if(rivals_.begin(), rivals_.end(), fell_behind), rivals_.end());
-  }
+  if (rivals_.size() == kMostRivals) dropRivalsFallenBehind();
   if (rivals_.size() < kMostRivals) rivals_.push_back(pose);
+}
+
+void BlockSearch::dropRivalsFallenBehind()
+{
+  const auto fell_behind = [this](const GridPose& rival) { return rival.sum < threshold(); };
+  rivals_.erase(std::remove_if(rivals_.begin(), rivals_.end(), fell_behind), rivals_.end());
 }
 
 }  // namespace eyeslam::tracking

@@ -42,19 +42,24 @@ class BlockSearch {
 
  private:
   struct Block {
-    std::uint16_t bound;
-    std::uint32_t index;
-    // Largest bound on top of the heap; of equal ones the lowest index, so that the order is always the same.
+    std::uint32_t bound;   // no pose of the block sums to more
+    std::uint32_t number;  // 5 x that of the large block, plus 0 for itself, 1 to 4 for a quarter of it
+    // Largest bound on top of the heap; of equal ones the lowest number, so that the order is always the same.
     bool operator<(const Block& other) const
     {
-      return bound != other.bound ? bound < other.bound : index > other.index;
+      return bound != other.bound ? bound < other.bound : number > other.number;
     }
   };
 
   void boundBlocks();
-  void open(const Block& block);
-  void judge(const GridPose& block_origin, int columns, int rows);
+  void push(const Block& block);
+  Block pop();
+  GridPose firstPose(const Block& block) const;
+  void findOffsets(const GridPose& first);
+  void split(const Block& block);
+  void computeAll(const Block& block);
   void keepRival(const GridPose& pose);
+  void dropRivalsFallenBehind();
   std::uint32_t threshold() const;
 
   const PoseGrid* grid_ = nullptr;  // of the search that runs

@@ -103,21 +103,27 @@ void sumBounds(const std::uint8_t* planes, std::ptrdiff_t stride, const std::int
 }
 
 EYESLAM_VECTOR_KERNEL
-void poolEightByEight(const std::uint8_t* table, std::ptrdiff_t stride, int width, std::uint8_t* scratch,
-                      std::uint8_t* bounds)
+void poolSmall(const std::uint8_t* table, std::ptrdiff_t stride, std::uint8_t* scratch, std::uint8_t* pooled)
 {
-  const int wide = width + 8;
-  std::memcpy(scratch, table, static_cast<std::size_t>(wide));
-  for (int r = 1; r < 8; ++r) {
-    const std::uint8_t* row = table + r * stride;
-    for (int x = 0; x < wide; ++x) scratch[x] = std::max(scratch[x], row[x]);
+  const std::uint8_t* below = table + stride;
+  const std::uint8_t* second = below + stride;
+  const std::uint8_t* third = second + stride;
+  for (std::ptrdiff_t x = 0; x < stride; ++x) {
+    scratch[x] = std::max(std::max(table[x], below[x]), std::max(second[x], third[x]));
   }
-  // In place, left to right: each value only looks at what lies to its right and is not yet pooled.
-  for (int reach = 1; reach < 8; reach *= 2) {
-    for (int x = 0; x + reach < wide; ++x) scratch[x] = std::max(scratch[x], scratch[x + reach]);
+  for (std::ptrdiff_t x = 0; x + 3 < stride; ++x) {
+    pooled[x] = std::max(std::max(scratch[x], scratch[x + 1]), std::max(scratch[x + 2], scratch[x + 3]));
   }
+  for (std::ptrdiff_t x = stride - 3; x < stride; ++x) pooled[x] = scratch[x];
+}
+
+EYESLAM_VECTOR_KERNEL
+void poolLarge(const std::uint8_t* small, std::ptrdiff_t stride, int width, std::uint8_t* bounds)
+{
+  const std::uint8_t* lower = small + 4 * stride;
   for (int x = 0; x < width; ++x) {
-    bounds[x] = static_cast<std::uint8_t>((scratch[x] >> 4) + ((scratch[x] & 15) != 0 ? 1 : 0));
+    const std::uint8_t most = std::max(std::max(small[x], small[x + 4]), std::max(lower[x], lower[x + 4]));
+    bounds[x] = static_cast<std::uint8_t>((most >> 4) + ((most & 15) != 0 ? 1 : 0));
   }
 }
 

@@ -21,9 +21,10 @@ void sumSixteenColumns(const std::uint8_t* table, std::ptrdiff_t stride, const s
 void sumBounds(const std::uint8_t* planes, std::ptrdiff_t stride, const std::int32_t* offsets, int count, int rows,
                int columns, std::uint16_t* sums, std::ptrdiff_t sums_stride);
 
-/// bounds[x] = maximum of the eight rows from `table` on and of columns x to x + 7, in sixteenths of 256 rounded up.
-/// Reads width + 8 bytes a row; `scratch` holds width + 8 bytes.
-void poolEightByEight(const std::uint8_t* table, std::ptrdiff_t stride, int width, std::uint8_t* scratch,
-                      std::uint8_t* bounds);
+/// pooled[x] = maximum of four rows of `table` and of columns x to x + 3, for x up to stride - 4; beyond that, of
+/// fewer.
+void poolSmall(const std::uint8_t* table, std::ptrdiff_t stride, std::uint8_t* scratch, std::uint8_t* pooled);
+/// bounds[x] = maximum of the 8 x 8 cells from x on, made of the `small` ones, in sixteenths of 256 rounded up.
+void poolLarge(const std::uint8_t* small, std::ptrdiff_t stride, int width, std::uint8_t* bounds);
 
 }  // namespace eyeslam::tracking

@@ -28,7 +28,8 @@ struct SearchWindow {
   double half_theta = 0.0;
 };
 
-/// What a search found. Pose and score are those of the best place seen even when it was refused.
+/// What a search found. When it was refused, pose and score are those of the best place seen; in large windows, where
+/// nothing below the least score is looked at, those of the centre.
 struct MatchResult {
   retina::Reason reason = retina::Reason::none;  ///< too_few_points, ambiguous, poor_match, searching; none: found
   retina::Pose2 map_T_frame;                     ///< frame px, whole cells from the window's centre

@@ -32,6 +32,7 @@ std::size_t boundBytes(const cv::Size& size)
 void MaxPooledTables::reserve(const cv::Size& largest)
 {
   cells_.reserve(cellBytes(largest));
+  small_.reserve(cellBytes(largest));
   bounds_.reserve(boundBytes(largest));
   scratch_.reserve(length(strideFor(largest.width)));
   pooled_.reserve(length(strideFor(largest.width)));
@@ -56,11 +57,15 @@ void MaxPooledTables::assign(const OccupancyMap& map, const cv::Rect& cells)
 void MaxPooledTables::pool(int first, int end)
 {
   if (size_.empty()) return;
+  small_.resize(cellBytes(size_));
   bounds_.resize(boundBytes(size_));
   scratch_.resize(length(stride_));
   pooled_.resize(length(stride_));
+  // A large window reaches into the small ones of four rows further on.
+  const int small_end = std::min(end, size_.height) + kSmallBlock;
+  for (int y = first; y < small_end; ++y) poolSmall(row(y), stride_, scratch_.data(), small_.data() + y * stride_);
   for (int y = first; y < end; ++y) {
-    poolEightByEight(row(y), stride_, size_.width, scratch_.data(), pooled_.data());
+    poolLarge(small_.data() + y * stride_, stride_, size_.width, pooled_.data());
     spreadOverPlanes(y);
   }
 }

@@ -12,9 +12,16 @@ namespace {
 constexpr int kTile = OccupancyMap::kTile;
 
 int floorModulo(int a, int b) { return a - b * floorDivide(a, b); }
+// Cells are counted from far outside the reach, so that unsigned division, a shift, rounds down.
+constexpr unsigned kOffset = 2 * OccupancyMap::kReach_cells;
+static_assert(kOffset % kTile == 0);
+int tileOf(int cell)
+{
+  return static_cast<int>((static_cast<unsigned>(cell) + kOffset) / kTile) - static_cast<int>(kOffset / kTile);
+}
 std::size_t indexInTile(int i, int j)
 {
-  return static_cast<std::size_t>(floorModulo(j, kTile) * kTile + floorModulo(i, kTile));
+  return ((static_cast<unsigned>(j) + kOffset) % kTile) * kTile + (static_cast<unsigned>(i) + kOffset) % kTile;
 }
 
 bool withinReach(double i, double j)
@@ -61,25 +68,21 @@ void OccupancyMap::add(const ScanPoints& points, const retina::Pose2& map_T_fram
 
 void OccupancyMap::hit(int i, int j)
 {
-  for (int dj = -1; dj <= 1; ++dj) {
-    for (int di = -1; di <= 1; ++di) {
-      const int away = std::abs(di) + std::abs(dj);
-      raise(i + di, j + dj,
-            away == 0   ? options_.hit_centre
-            : away == 1 ? options_.hit_edge
-                        : options_.hit_corner,
-            away == 0   ? options_.most_centre
-            : away == 1 ? options_.most_edge
-                        : options_.most_corner);
-    }
-  }
   const cv::Rect touched(i - 1, j - 1, 3, 3);
   known_ = known_.empty() ? touched : known_ | touched;
+  for (int dj = -1; dj <= 1; ++dj) {
+    for (int di = -1; di <= 1; ++di) {
+      const int across = std::abs(di) + std::abs(dj);
+      if (across == 0) raise(i, j, options_.hit_centre, options_.most_centre);
+      if (across == 1) raise(i + di, j + dj, options_.hit_edge, options_.most_edge);
+      if (across == 2) raise(i + di, j + dj, options_.hit_corner, options_.most_corner);
+    }
+  }
 }
 
 void OccupancyMap::raise(int i, int j, int hit, int most)
 {
-  Tile& tile = tiles_.at(floorDivide(i, kTile), floorDivide(j, kTile));
+  Tile& tile = tiles_.at(tileOf(i), tileOf(j));
   std::uint8_t& cell = tile.cells[indexInTile(i, j)];
   // A centre's 255 is not lowered to the 190 of a neighbour's edge.
   cell = static_cast<std::uint8_t>(std::max<int>(cell, std::min(cell + hit, most)));

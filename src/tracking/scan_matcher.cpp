@@ -156,10 +156,11 @@ GridPose ScanMatcher::Steps::findByBounds()
 {
   tables_.pool();
   BlockSearch::Limits limits;
+  limits.least_sum = static_cast<std::uint32_t>(std::ceil(options_.min_score * 255.0 * points_.size()));
   limits.rival_ratio = std::min(1.0, options_.ambiguous_ratio);
   blocks_.search(grid_, points_, tables_, origin_, limits);
   rivals_.assign(blocks_.rivals().begin(), blocks_.rivals().end());
-  const GridPose best = blocks_.best();
+  const GridPose best = blocks_.found() ? blocks_.best() : GridPose{0, 0, 0, sumAt(0, 0, 0)};
   surface_.evaluate(points_, tables_, origin_, PoseBox::around(best, grid_, kSurfaceSteps, kSurfaceCells));
   keepRivals(best);
   return best;

@@ -23,7 +23,7 @@ struct Scene {
   explicit Scene(int points)
   {
     std::mt19937 random(1);
-    const ScanPoints vessels = support::randomVessels(random, 120, 1200.0);
+    const ScanPoints vessels = support::randomVessels(random, 60, 1200.0);
     support::saturate(map, vessels);
     std::uniform_real_distribution<double> place(-300.0, 300.0), angle(-0.2, 0.2);
     for (int i = 0; i < 50; ++i) {
