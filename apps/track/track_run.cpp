@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "track/track_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "command_line/clocks.h"
+#include "command_line/version.h"
+#include "eyeslam/configuration/json.h"
+#include "eyeslam/configuration/listing.h"
+#include "eyeslam/files/map_files.h"
+#include "eyeslam/files/whole_file.h"
+#include "track/recorder.h"
+
+namespace eyeslam::apps {
+namespace {
+
+constexpr std::int64_t kSpaceCheckPeriod = 64;  // frames
+
+const std::vector<std::string> kOwnedNames = {"trajectory.csv", "map",         "vessels.csv", "mosaic.png",
+                                              "mosaic.json",    "overlay.mp4", "run.json"};
+
+files::VideoSourceOptions sourceOptions(const TrackArguments& arguments)
+{
+  files::VideoSourceOptions options;
+  options.frames_per_second = arguments.fps;
+  options.last_frame = arguments.to;
+  options.now = monotonicSeconds;
+  return options;
+}
+
+// How many frames the progress bar waits for.
+std::optional<std::int64_t> expectedFrames(const files::VideoSource& source, const TrackArguments& arguments)
+{
+  std::optional<std::int64_t> count = source.announcedFrames();
+  if (arguments.to >= 0) count = std::min(count.value_or(arguments.to + 1), arguments.to + 1);
+  if (count) count = *count - arguments.from;
+  return count;
+}
+
+Verbosity verbosity(const TrackArguments& arguments) { return arguments.quiet ? Verbosity::quiet : Verbosity::normal; }
+
+}  // namespace
+
+TrackRun::TrackRun(const TrackArguments& arguments)
+    : arguments_(arguments),
+      options_(trackerOptions(arguments)),
+      source_(files::openVideoSource(arguments.input, sourceOptions(arguments))),
+      pixel_size_(files::pixelSizeOf(arguments.input, arguments.um_per_px)),
+      method_(baselines::makeMethod(arguments.method, options_)),
+      folder_(arguments.out, kOwnedNames),
+      trajectory_(folder_.staged("trajectory.csv"), folder_.final("trajectory.csv")),
+      snapshots_(arguments.snapshots.begin(), arguments.snapshots.end())
+{
+  addObservers();
+}
+
+void TrackRun::addObservers()
+{
+  const double rate = source_->framesPerSecond();
+  if (!arguments_.record.empty()) observers_.push_back(std::make_unique<Recorder>(arguments_.record, rate));
+}
+
+void TrackRun::run()
+{
+  const double start = monotonicSeconds();
+  sayNotices();
+  trackFrames();
+  if (interrupted_) sayInterrupted();
+  if (summary_.frames() == 0) {
+    throw files::FileError(
+        fmt::format("{}: has no frame {}; --from must be before its end", arguments_.input, arguments_.from));
+  }
+  finishMaps();
+  trajectory_.close();
+  for (const auto& observer : observers_) observer->finish();
+  writeRecord(monotonicSeconds() - start);
+  publish();
+  sayNotices();
+  sayDone();
+}
+
+void TrackRun::trackFrames()
+{
+  Progress progress(arguments_.input, expectedFrames(*source_, arguments_), verbosity(arguments_));
+  files::VideoFrame frame;
+  source_->skipTo(arguments_.from);
+  while (!(interrupted_ = interruption_.requested()) && source_->read(frame)) {
+    trackFrame(frame);
+    progress.show(summary_.frames());
+  }
+}
+
+void TrackRun::trackFrame(const files::VideoFrame& frame)
+{
+  const double start = threadCpuMilliseconds();
+  const tracking::TrackResult& result = method_->track(frame.image);
+  const double localized = threadCpuMilliseconds();
+  method_->updateMap();
+  const files::TrajectoryRow row{frame.number, frame.t, result, localized - start, threadCpuMilliseconds() - localized};
+  trajectory_.add(row);
+  summary_.add(row);
+  last_frame_ = frame.number;
+  for (const auto& observer : observers_) observer->onFrame(frame, result, *method_);
+  if (snapshots_.count(frame.number) > 0) files::writeMap(folder_, method_->vesselMap(), frame.number, pixel_size_);
+  if (summary_.frames() % kSpaceCheckPeriod == 0) folder_.checkSpace();
+}
+
+// The last frame's map is the finished one, also where a snapshot of that frame was asked for.
+void TrackRun::finishMaps()
+{
+  method_->finishMap();
+  files::writeMap(folder_, method_->vesselMap(), last_frame_, pixel_size_);
+  folder_.write("vessels.csv", files::vesselsCsv(method_->vesselMap()));
+  const baselines::Mosaic mosaic = method_->mosaic();
+  if (method_->eyeSlam() == nullptr && mosaic.picture.empty()) return;  // a method without one
+  files::writeMosaic(folder_, mosaic.picture, {mosaic.origin.x, mosaic.origin.y, mosaic.px_per_pixel}, pixel_size_);
+}
+
+void TrackRun::writeRecord(double wall_s) const
+{
+  tracking::TrackerOptions options = options_;
+  const auto fields = configuration::fieldsOf(options);
+  const auto paths = source_->paths();
+  nlohmann::ordered_json record;
+  record["program"] = "eyeslam-track";
+  record["version"] = kVersion;
+  record["input"] = {{"name", arguments_.input}, {"files", paths.size()}, {"sha256", nullptr}};
+  if (!paths.empty()) record["input"]["sha256"] = files::sha256OfFiles(paths);
+  record["method"] = arguments_.method;
+  record["configuration"] = configuration::jsonOf(fields);
+  record["configuration_sha256"] = configuration::hashOf(fields);
+  record["um_per_px"] = nullptr;
+  if (pixel_size_.um_per_px) record["um_per_px"] = *pixel_size_.um_per_px;
+  record["um_per_px_source"] = pixel_size_.source;
+  record["first_frame"] = arguments_.from;
+  record["last_frame"] = last_frame_;
+  record["interrupted"] = interrupted_;
+  record["counts"] = summary_.counts();
+  record["notices"] = source_->notices();
+  record["timing"] = summary_.timing(wall_s);
+  folder_.write("run.json", record.dump(2) + "\n");
+}
+
+void TrackRun::publish()
+{
+  folder_.publish();
+  for (const auto& observer : observers_) observer->publish();
+}
+
+void TrackRun::sayNotices()
+{
+  const auto& notices = source_->notices();
+  for (; notices_said_ < notices.size(); ++notices_said_) {
+    if (!arguments_.quiet) fmt::print(stderr, "eyeslam-track: {}\n", notices[notices_said_]);
+  }
+}
+
+void TrackRun::sayInterrupted() const
+{
+  if (summary_.frames() == 0)
+    throw files::FileError(arguments_.input + ": interrupted before the first frame; nothing written");
+  fmt::print(stderr, "eyeslam-track: interrupted after frame {}; what was done is kept in {}\n", last_frame_,
+             arguments_.out);
+}
+
+void TrackRun::sayDone() const
+{
+  if (arguments_.quiet) return;
+  fmt::print("{}: {} frames, {} tracked, {:.2f} ms CPU a frame (median); results in {}\n", arguments_.input,
+             summary_.frames(), summary_.tracked(), summary_.medianCpuMs(), arguments_.out);
+}
+
+}  // namespace eyeslam::apps
