@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
+#include <limits>
+
+#include "eyeslam/tracking/frame.h"
 
 namespace eyeslam::tracking {
 
@@ -12,19 +16,67 @@ namespace {
 constexpr int kReach = TracingKernels::kFarthestEdge + 2;  // of a profile to either side: the derivative's half width
 constexpr int kProfile = 24;                               // 2 kReach + 1, made a whole number of vectors
 constexpr int kMargin = kReach + 5;                        // padding: the reach and the shift of the farthest row
+constexpr int kBrightest = Frame::kContrastUnit;           // clipped there, seven rows add up in 16 bits
+constexpr int kShift = 3;                                  // and an eighth of their sum can be weighted in 16 bits
 
 static_assert(2 * kReach + 1 <= kProfile);
+static_assert(7 * kBrightest < 32768 && 6 * (7 * kBrightest >> kShift) < 32768);
 
-using Profile = std::array<int, kProfile>;
+using Profile = std::array<std::int16_t, kProfile>;
+using Lanes = std::int16_t __attribute__((vector_size(16)));  // eight columns in one register, on any machine
 
-// Sum over the template's rows; profile[kReach + j] belongs to offset j from the middle.
+inline Lanes load(const std::int16_t* from)
+{
+  Lanes lanes;
+  std::memcpy(&lanes, from, sizeof lanes);
+  return lanes;
+}
+
+// An eighth of the sum over the template's rows; profile[kReach + j] belongs to offset j from the middle.
 inline void sumRows(const std::int16_t* first, std::ptrdiff_t step, const int* shift, int rows, Profile& profile)
 {
-  profile.fill(0);
+  Lanes a{}, b{}, c{};
   for (int r = 0; r < rows; ++r) {
     const std::int16_t* row = first + r * step + shift[r];
-    for (int j = 0; j < kProfile; ++j) profile[static_cast<std::size_t>(j)] += row[j];
+    a += load(row);
+    b += load(row + 8);
+    c += load(row + 16);
   }
+  a >>= kShift;
+  b >>= kShift;
+  c >>= kShift;
+  std::memcpy(profile.data(), &a, sizeof a);
+  std::memcpy(profile.data() + 8, &b, sizeof b);
+  std::memcpy(profile.data() + 16, &c, sizeof c);
+}
+
+// The derivative (-1 -2 0 2 1) at eight neighbouring places; `at` is the profile at the first of them.
+inline Lanes differentiate(const std::int16_t* at)
+{
+  const Lanes inner = load(at + 1) - load(at - 1);
+  return load(at + 2) - load(at - 2) + inner + inner;
+}
+
+struct Edge {
+  int slope;
+  int offset;
+};
+
+// The steepest of eight slopes, lane i at offset i + 1. The lane rides in the low bits of the value, so that one
+// maximum finds both, and the nearer edge wins a tie; three bits of some 20000 are far below the noise.
+inline Edge steepest(Lanes slopes, int nearest, int farthest)
+{
+  constexpr Lanes kOffset = {1, 2, 3, 4, 5, 6, 7, 8};
+  constexpr std::int16_t kLow = 7;
+  const Lanes allowed =
+      (kOffset >= static_cast<std::int16_t>(nearest)) & (kOffset <= static_cast<std::int16_t>(farthest));
+  Lanes best = (slopes & static_cast<std::int16_t>(~kLow)) | ((kOffset - 1) ^ kLow);
+  best = (best & allowed) | (std::numeric_limits<std::int16_t>::min() & ~allowed);
+  const auto larger = [](Lanes a, Lanes b) { return a > b ? a : b; };
+  best = larger(best, __builtin_shufflevector(best, best, 4, 5, 6, 7, 0, 1, 2, 3));
+  best = larger(best, __builtin_shufflevector(best, best, 2, 3, 0, 1, 6, 7, 4, 5));
+  best = larger(best, __builtin_shufflevector(best, best, 1, 0, 3, 2, 5, 4, 7, 6));
+  return {best[0] & ~kLow, 1 + ((best[0] & kLow) ^ kLow)};
 }
 
 }  // namespace
@@ -47,13 +99,17 @@ TracingKernels::TracingKernels(const TracingKernelOptions& options)
     shape.rows = 2 * half + 1;
     for (int r = 0; r < shape.rows; ++r)
       shape.shift[static_cast<std::size_t>(r)] = static_cast<int>(std::lround((r - half) * slope));
-    shape.weight = (1 << 16) / (3 * shape.rows);
+    shape.weight = (1 << (16 + kShift)) / (3 * shape.rows);
   }
 }
 
 void TracingKernels::assign(const cv::Mat_<std::int16_t>& plane)
 {
   cv::copyMakeBorder(plane, upright_, kMargin, kMargin, kMargin, kMargin, cv::BORDER_REPLICATE);
+  for (int y = 0; y < upright_.rows; ++y) {
+    std::int16_t* row = upright_[y];
+    for (int x = 0; x < upright_.cols; ++x) row[x] = std::min<std::int16_t>(row[x], kBrightest);
+  }
   cv::transpose(upright_, transposed_);
 }
 
@@ -66,19 +122,11 @@ VesselEdges TracingKernels::evaluate(int x, int y, int orientation, int nearest,
   Profile profile;
   sumRows(plane[row] + column, static_cast<std::ptrdiff_t>(plane.step1()), shape.shift.data(), shape.rows, profile);
 
-  const int* middle = profile.data() + kReach;
-  const auto slope = [&](int at) { return middle[at + 2] + 2 * middle[at + 1] - 2 * middle[at - 1] - middle[at - 2]; };
-  VesselEdges edges;
-  int left = slope(-nearest);
-  int right = slope(nearest);
-  edges.left_offset = edges.right_offset = nearest;
-  for (int k = nearest + 1; k <= farthest; ++k) {
-    if (const int rise = slope(k); rise > right) right = rise, edges.right_offset = k;
-    if (const int fall = slope(-k); fall < left) left = fall, edges.left_offset = k;
-  }
-  edges.left = -left * shape.weight / (1 << 16);
-  edges.right = right * shape.weight / (1 << 16);
-  return edges;
+  const std::int16_t* middle = profile.data() + kReach;
+  const Lanes falls = -differentiate(middle - kFarthestEdge);
+  const Edge left = steepest(__builtin_shufflevector(falls, falls, 7, 6, 5, 4, 3, 2, 1, 0), nearest, farthest);
+  const Edge right = steepest(differentiate(middle + 1), nearest, farthest);
+  return {left.slope * shape.weight / (1 << 16), right.slope * shape.weight / (1 << 16), left.offset, right.offset};
 }
 
 Eigen::Vector2f TracingKernels::normalAxis(int orientation)

@@ -42,7 +42,7 @@ class TracingKernels {
   static constexpr int kDirections = 16;
   static constexpr int kOrientations = 8;
   /// Farthest edge from the middle, steps along the normal axis.
-  static constexpr int kFarthestEdge = 9;
+  static constexpr int kFarthestEdge = 8;
 
   explicit TracingKernels(const TracingKernelOptions& options = {});
 
@@ -67,7 +67,7 @@ class TracingKernels {
     bool transposed = false;
     int rows = 0;
     std::array<int, 7> shift{};  // of each row, px
-    int weight = 0;              // 65536 / (3 rows): a step edge reads as its height
+    int weight = 0;              // of the derivative, so that a step edge reads as its height
   };
 
   std::array<Eigen::Vector2f, kDirections> directions_;

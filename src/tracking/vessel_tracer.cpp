@@ -10,8 +10,11 @@ namespace eyeslam::tracking {
 
 namespace {
 
-constexpr int kBin = 8;  // of the histogram of levels, 1 / Frame::kContrastUnit
-constexpr int kBins = 4 * Frame::kContrastUnit / kBin;
+constexpr int kTile = 64;     // frame px; each has levels of its own, from half as much again
+constexpr int kSampling = 3;  // frame px, along a line of the grid
+constexpr int kBin = 4;       // of the histograms of levels, 1 / Frame::kContrastUnit
+constexpr int kBins = 512;
+constexpr double kMedianOfDifferences = 0.954;  // of two normal samples, in sigma: 0.6745 sqrt 2
 constexpr std::size_t kSeeds = 4096;
 constexpr int kOwnSteps = 8;  // a trace may touch what it claimed so few steps ago
 constexpr int kNarrowestClaim = 2;
@@ -22,16 +25,14 @@ int round(float value) { return static_cast<int>(std::lround(value)); }
 
 int wrapDirection(int direction) { return direction & (TracingKernels::kDirections - 1); }
 
-// [1 2 1] along a line; the plane's step between neighbours is 1 (rows) or its row step (columns).
-int smooth(const std::int16_t* at, std::ptrdiff_t step) { return (at[-step] + 2 * at[0] + at[step]) / 4; }
+std::size_t binOf(int level) { return static_cast<std::size_t>(std::clamp(level / kBin + kBins / 2, 0, kBins - 1)); }
 
-// The level below which a share of all samples lies, to a bin.
-int quantile(const std::vector<int>& histogram, int total, double share)
+// The level below which half of all samples lie, to a bin.
+int median(const std::vector<int>& histogram, int total)
 {
-  const int wanted = static_cast<int>(share * total);
   int below = 0;
   std::size_t bin = 0;
-  while (bin + 1 < histogram.size() && below + histogram[bin] <= wanted) below += histogram[bin++];
+  while (bin + 1 < histogram.size() && 2 * (below + histogram[bin]) <= total) below += histogram[bin++];
   return (static_cast<int>(bin) - kBins / 2) * kBin + kBin / 2;
 }
 
@@ -50,7 +51,7 @@ void setDirections(std::size_t first, VesselPoints& points)
 }  // namespace
 
 VesselTracer::VesselTracer(const VesselTracerOptions& options)
-    : options_(options), kernels_(options.kernels), histogram_(kBins)
+    : options_(options), kernels_(options.kernels), levels_seen_(kBins), differences_(kBins)
 {
   seeds_.reserve(kSeeds);
 }
@@ -60,7 +61,7 @@ void VesselTracer::detect(const Frame& frame, const OcclusionMask& mask, VesselP
   points.clear();
   points.reserve(static_cast<std::size_t>(options_.most_points) + 1);
   labels_.create(frame.height(), frame.width());
-  labels_.setTo(0);
+  std::fill(labels_.begin(), labels_.end(), std::uint16_t{0});  // setTo would allocate
   claims_ = 0;
 
   const cv::Mat_<std::int16_t>& plane = frame.contrast();
@@ -70,27 +71,54 @@ void VesselTracer::detect(const Frame& frame, const OcclusionMask& mask, VesselP
   for (const Seed& seed : seeds_) {
     if (isFull(points)) return;
     Place place;
-    if (labels_(seed.y, seed.x) == 0 && validate(seed, place)) trace(place, mask, points);
+    if (labels_(seed.y, seed.x) == 0 && validate(seed, mask, place)) trace(place, mask, points);
   }
 }
 
-// Median and a robust spread of the levels on the grid's lines: no pass over all pixels (facts A2.3.1).
+// Per tile, because a dark corner is noisier than the rest: its grey levels are multiplied by more.
 void VesselTracer::estimateLevels(const cv::Mat_<std::int16_t>& plane, const OcclusionMask& mask)
 {
-  std::fill(histogram_.begin(), histogram_.end(), 0);
+  tile_columns_ = (plane.cols + kTile - 1) / kTile;
+  levels_.clear();
+  const cv::Rect view(0, 0, plane.cols, plane.rows);
+  for (int y = 0; y < plane.rows; y += kTile) {
+    for (int x = 0; x < plane.cols; x += kTile) {
+      const cv::Rect tile(x - kTile / 4, y - kTile / 4, kTile * 3 / 2, kTile * 3 / 2);
+      levels_.push_back(estimateLevels(plane, mask, tile & view));
+    }
+  }
+}
+
+// Median level and noise on some lines of the grid: no pass over all pixels (facts A2.3.1). The noise is that between
+// neighbouring samples: it is small beside the contrast of vessels, even where they are many, yet grows with grain.
+VesselTracer::Levels VesselTracer::estimateLevels(const cv::Mat_<std::int16_t>& plane, const OcclusionMask& mask,
+                                                  const cv::Rect& tile)
+{
+  std::fill(levels_seen_.begin(), levels_seen_.end(), 0);
+  std::fill(differences_.begin(), differences_.end(), 0);
   int total = 0;
-  for (int y = options_.grid_pitch_px / 2; y < plane.rows; y += options_.grid_pitch_px) {
-    for (int x = 1; x < plane.cols; x += 3) {
+  for (int y = tile.y + options_.grid_pitch_px / 2; y < tile.y + tile.height; y += options_.grid_pitch_px) {
+    const std::int16_t* row = plane[y];
+    for (int x = tile.x; x + kSampling < tile.x + tile.width; x += kSampling) {
       if (!mask.isVisible(x, y)) continue;
-      ++histogram_[static_cast<std::size_t>(std::clamp(plane(y, x) / kBin + kBins / 2, 0, kBins - 1))];
+      ++levels_seen_[binOf(row[x])];
+      ++differences_[binOf(std::abs(row[x + kSampling] - row[x]))];
       ++total;
     }
   }
-  median_ = quantile(histogram_, total, 0.5);
-  // The upper half only: vessels are darker, so they do not widen it. 0.6745 sigma reach from the median to a quartile.
-  spread_ = static_cast<int>((quantile(histogram_, total, 0.75) - median_) / 0.6745);
-  threshold_ =
-      static_cast<int>(std::max(options_.edge_strength * spread_, options_.lowest_strength * Frame::kContrastUnit));
+  Levels levels;
+  levels.median = median(levels_seen_, total);
+  const double noise = median(differences_, total) / kMedianOfDifferences;
+  levels.seed = levels.median - std::max(1, static_cast<int>(options_.seed_depth * noise));
+  const double least = options_.lowest_strength * Frame::kContrastUnit;
+  levels.start = static_cast<int>(std::max(options_.seed_strength * noise, least));
+  levels.go_on = static_cast<int>(std::max(options_.edge_strength * noise, least));
+  return levels;
+}
+
+const VesselTracer::Levels& VesselTracer::levelsAt(int x, int y) const
+{
+  return levels_[static_cast<std::size_t>(y / kTile * tile_columns_ + x / kTile)];
 }
 
 // Local minima along the grid's lines (facts A2.3.2), darkest first: strong vessels claim their pixels before weak
@@ -98,25 +126,28 @@ void VesselTracer::estimateLevels(const cv::Mat_<std::int16_t>& plane, const Occ
 void VesselTracer::findSeeds(const cv::Mat_<std::int16_t>& plane, const OcclusionMask& mask)
 {
   seeds_.clear();
-  const int least = std::max(1, static_cast<int>(options_.seed_depth * spread_));
+  const int first = options_.grid_pitch_px / 2;
   const auto row_step = static_cast<std::ptrdiff_t>(plane.step1());
-  const auto consider = [&](int x, int y, std::ptrdiff_t step) {
-    const std::int16_t* at = plane[y] + x;
-    if (median_ - at[0] < least || at[0] > at[-step] || at[0] > at[step]) return;
-    const int depth = median_ - smooth(at, step);
-    if (depth >= least && seeds_.size() < kSeeds && mask.isVisible(x, y)) seeds_.push_back({depth, x, y});
-  };
-  for (int y = options_.grid_pitch_px / 2; y < plane.rows; y += options_.grid_pitch_px)
-    for (int x = 1; x < plane.cols - 1; ++x) consider(x, y, 1);
+  for (int y = first; y < plane.rows; y += options_.grid_pitch_px)
+    for (int x = 1; x < plane.cols - 1; ++x) consider(plane[y] + x, 1, x, y, mask);
   for (int y = 1; y < plane.rows - 1; ++y)
-    for (int x = options_.grid_pitch_px / 2; x < plane.cols; x += options_.grid_pitch_px) consider(x, y, row_step);
+    for (int x = first; x < plane.cols; x += options_.grid_pitch_px) consider(plane[y] + x, row_step, x, y, mask);
   std::sort(seeds_.begin(), seeds_.end(), [](const Seed& a, const Seed& b) {
     return a.depth != b.depth ? a.depth > b.depth : (a.y != b.y ? a.y < b.y : a.x < b.x);
   });
 }
 
+void VesselTracer::consider(const std::int16_t* at, std::ptrdiff_t step, int x, int y, const OcclusionMask& mask)
+{
+  if (at[0] > at[-step] || at[0] > at[step]) return;
+  const Levels& levels = levelsAt(x, y);
+  const int level = (at[-step] + 2 * at[0] + at[step]) / 4;
+  if (level > levels.seed || seeds_.size() == kSeeds || !mask.isVisible(x, y)) return;
+  seeds_.push_back({levels.median - level, x, y});
+}
+
 // All orientations; the best left and the best right edge must be parallel to within one step (facts A2.3.5).
-bool VesselTracer::validate(const Seed& seed, Place& place) const
+bool VesselTracer::validate(const Seed& seed, const OcclusionMask& mask, Place& place) const
 {
   int best = 0, best_left = 0, best_right = 0;
   std::array<VesselEdges, TracingKernels::kOrientations> all;
@@ -131,7 +162,8 @@ bool VesselTracer::validate(const Seed& seed, Place& place) const
   if (std::min(apart, TracingKernels::kOrientations - apart) > 1) return false;
   place = {static_cast<float>(seed.x), static_cast<float>(seed.y), best, all[static_cast<std::size_t>(best)]};
   centre(place);
-  return isStrong(place.edges);
+  return mask.isVisible(round(place.x), round(place.y)) &&
+         isStrong(place, levelsAt(round(place.x), round(place.y)).start);
 }
 
 // Both ways from the seed. A short trace is dropped, but its pixels stay claimed: the next seed would repeat it.
@@ -145,7 +177,7 @@ void VesselTracer::trace(const Place& seed, const OcclusionMask& mask, VesselPoi
   backward.direction = wrapDirection(seed.direction + TracingKernels::kDirections / 2);
   follow(backward, mask, points);
   std::reverse(points.begin() + static_cast<std::ptrdiff_t>(first), points.end());
-  points.push_back(pointAt(seed));
+  if (!isFull(points)) points.push_back(pointAt(seed));
   branch_start_ = claims_;
   follow(seed, mask, points);
   if (points.size() - first < static_cast<std::size_t>(options_.shortest_trace)) points.resize(first);
@@ -164,7 +196,7 @@ void VesselTracer::follow(Place place, const OcclusionMask& mask, VesselPoints& 
     if (!mask.isVisible(round(x), round(y))) break;
     place = bestPlace(place, round(x), round(y));
     if (!isFree(place, mask)) break;
-    weak = isStrong(place.edges) ? 0 : weak + 1;
+    weak = isStrong(place, levelsAt(round(place.x), round(place.y)).go_on) ? 0 : weak + 1;
     if (weak > options_.weak_steps) {
       --weak;
       break;
@@ -206,10 +238,10 @@ void VesselTracer::centre(Place& place) const
   place.y += shift * axis.y();
 }
 
-bool VesselTracer::isStrong(const VesselEdges& edges) const
+bool VesselTracer::isStrong(const Place& place, int least) const
 {
-  const auto [weaker, stronger] = std::minmax(edges.left, edges.right);
-  return edges.sum() >= threshold_ && weaker >= options_.weaker_edge * stronger;
+  const auto [weaker, stronger] = std::minmax({place.edges.left, place.edges.right});
+  return place.edges.sum() >= least && weaker >= options_.weaker_edge * stronger;
 }
 
 // In view, and not claimed: by another trace, or by this one before it came round in a loop.

@@ -14,15 +14,16 @@ namespace eyeslam::tracking {
 struct VesselTracerOptions {
   TracingKernelOptions kernels;
   int grid_pitch_px = 12;
-  double seed_depth = 1.0;
-  double edge_strength = 1.6;
+  double seed_depth = 2.7;
+  double seed_strength = 5.5;
+  double edge_strength = 3.6;
   double lowest_strength = 0.02;
   double weaker_edge = 0.25;
   int farthest_edge_px = 7;
   double step_px = 2.5;
   int turn = 2;
   int weak_steps = 2;
-  int shortest_trace = 6;
+  int shortest_trace = 8;
   int most_points = 4000;
 
   template <class Self, class Visitor>
@@ -32,10 +33,12 @@ struct VesselTracerOptions {
     visitor.group("kernels", self.kernels);
     visitor.field("grid_pitch_px", self.grid_pitch_px, Range{4, 64}, "frame px",
                   "distance of the lines on which seeds are sought; source: facts A2.3 (12 to 16 proposed)");
-    visitor.field("seed_depth", self.seed_depth, Range{0.0, 10.0}, "spreads",
+    visitor.field("seed_depth", self.seed_depth, Range{0.0, 100.0}, "noise sigmas",
                   "how far under the median level a seed lies; source: eyeslam-bench detect");
-    visitor.field("edge_strength", self.edge_strength, Range{0.0, 20.0}, "spreads",
-                  "least sum of both edge responses; source: eyeslam-bench detect");
+    visitor.field("seed_strength", self.seed_strength, Range{0.0, 100.0}, "noise sigmas",
+                  "least sum of both edge responses where a trace begins; source: eyeslam-bench detect");
+    visitor.field("edge_strength", self.edge_strength, Range{0.0, 100.0}, "noise sigmas",
+                  "least sum of both edge responses where a trace goes on; source: eyeslam-bench detect");
     visitor.field("lowest_strength", self.lowest_strength, Range{0.0, 1.0}, "fraction of the background",
                   "least sum of both edge responses however calm the picture; source: tracker study 2.5 (0.03)");
     visitor.field("weaker_edge", self.weaker_edge, Range{0.0, 1.0}, "of the stronger edge",
@@ -71,6 +74,12 @@ class VesselTracer : public VesselDetector {
     int x = 0;
     int y = 0;
   };
+  struct Levels {  // of the plane, 1 / Frame::kContrastUnit
+    int median = 0;
+    int seed = 0;   // seeds are darker
+    int start = 0;  // least sum of both edges where a trace begins
+    int go_on = 0;  // and where it goes on
+  };
   struct Place {  // where a trace stands
     float x = 0.0F;
     float y = 0.0F;
@@ -79,13 +88,16 @@ class VesselTracer : public VesselDetector {
   };
 
   void estimateLevels(const cv::Mat_<std::int16_t>& plane, const OcclusionMask& mask);
+  Levels estimateLevels(const cv::Mat_<std::int16_t>& plane, const OcclusionMask& mask, const cv::Rect& tile);
+  const Levels& levelsAt(int x, int y) const;
+  void consider(const std::int16_t* at, std::ptrdiff_t step, int x, int y, const OcclusionMask& mask);
   void findSeeds(const cv::Mat_<std::int16_t>& plane, const OcclusionMask& mask);
-  bool validate(const Seed& seed, Place& place) const;
+  bool validate(const Seed& seed, const OcclusionMask& mask, Place& place) const;
   void trace(const Place& seed, const OcclusionMask& mask, VesselPoints& points);
   void follow(Place place, const OcclusionMask& mask, VesselPoints& points);
   Place bestPlace(const Place& from, int x, int y) const;
   void centre(Place& place) const;
-  bool isStrong(const VesselEdges& edges) const;
+  bool isStrong(const Place& place, int least) const;
   bool isFree(const Place& place, const OcclusionMask& mask) const;
   void claim(const Place& place);
   float calibre(const Place& place) const;
@@ -94,10 +106,9 @@ class VesselTracer : public VesselDetector {
 
   VesselTracerOptions options_;
   TracingKernels kernels_;
-  int median_ = 0;     // level of the plane, 1 / Frame::kContrastUnit
-  int spread_ = 0;     // robust sigma of the plane
-  int threshold_ = 0;  // of the sum of both edges
-  std::vector<int> histogram_;
+  std::vector<Levels> levels_;  // of each tile of the view, row by row
+  int tile_columns_ = 0;
+  std::vector<int> levels_seen_, differences_;  // histograms of a tile
   std::vector<Seed> seeds_;
   cv::Mat_<std::uint16_t> labels_;  // number of the step that claimed the pixel, from 1; 0 = free
   int claims_ = 0;                  // steps so far
