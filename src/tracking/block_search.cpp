@@ -28,7 +28,7 @@ void BlockSearch::reserve(int blocks, int points)
 {
   bounds_.reserve(static_cast<std::size_t>(blocks));
   offsets_.reserve(static_cast<std::size_t>(points));
-  heap_.reserve(static_cast<std::size_t>(blocks));
+  heap_.reserve(4 * static_cast<std::size_t>(blocks));
   rivals_.reserve(kMostRivals);
 }
 
@@ -48,6 +48,7 @@ void BlockSearch::search(const PoseGrid& grid, const TurnedPoints& points, const
   found_ = false;
   rivals_.clear();
   boundBlocks();
+  fillHeap();
   std::int64_t operations = 0;
   while (!heap_.empty() && heap_.front().bound >= threshold()) {
     if (limits.operations >= 0 && operations > limits.operations) break;
@@ -56,7 +57,7 @@ void BlockSearch::search(const PoseGrid& grid, const TurnedPoints& points, const
     if (is_large) {
       split(block);
     } else {
-      computeAll(block);
+      computeAll(block, kSmall);
     }
     operations += points.size() * (is_large ? kBlock / kSmall : kSmall);
   }
@@ -74,11 +75,9 @@ void BlockSearch::boundBlocks()
 {
   block_columns_ = blocksFor(grid_->columns());
   block_rows_ = blocksFor(grid_->rows());
-  const int width = widthFor(block_columns_);
-  bounds_.resize(static_cast<std::size_t>(width * block_rows_));
+  const int width = widthFor(block_columns_), per_angle = width * block_rows_;
+  bounds_.resize(static_cast<std::size_t>(per_angle * points_->angles()));
   offsets_.resize(static_cast<std::size_t>(points_->size()));
-  heap_.clear();
-  std::uint32_t number = 0;
   for (int angle = 0; angle < points_->angles(); ++angle) {
     const int k = points_->firstAngle() + angle;
     for (std::size_t n = 0; n < offsets_.size(); ++n) {
@@ -86,13 +85,38 @@ void BlockSearch::boundBlocks()
                                                                    points_->cellY(k)[n] - grid_->half_j - origin_.y));
     }
     sumBounds(tables_->bounds(), tables_->boundStride(), offsets_.data(), points_->size(), block_rows_, block_columns_,
-              bounds_.data(), width);
-    for (int row = 0; row < block_rows_; ++row) {
-      for (int column = 0; column < block_columns_; ++column, number += kParts) {
-        const std::uint32_t bound = bounds_[static_cast<std::size_t>(row * width + column)];
-        if (bound * kUnit >= limits_.least_sum) heap_.push_back({bound * kUnit, number});
-      }
-    }
+              bounds_.data() + angle * per_angle, width);
+  }
+}
+
+template <class Visit>
+void BlockSearch::forEachBlock(int angle, Visit&& visit) const
+{
+  const int width = widthFor(block_columns_);
+  const std::uint16_t* bound = bounds_.data() + angle * width * block_rows_;
+  auto number = static_cast<std::uint32_t>(kParts * angle * block_columns_ * block_rows_);
+  for (int row = 0; row < block_rows_; ++row, bound += width) {
+    for (int column = 0; column < block_columns_; ++column, number += kParts) visit(Block{bound[column], number});
+  }
+}
+
+// A good score early keeps most blocks out of the heap: the most promising block of every angle is computed first.
+void BlockSearch::fillHeap()
+{
+  for (int angle = 0; angle < points_->angles(); ++angle) {
+    Block most_promising{0, 0};
+    forEachBlock(angle, [&](const Block& block) {
+      if (block.bound > most_promising.bound) most_promising = block;
+    });
+    if (most_promising.bound * kUnit >= threshold()) computeAll(most_promising, kBlock);
+  }
+  heap_.clear();
+  heap_.reserve(4 * bounds_.size());  // each opened block leaves four
+  const std::uint32_t least = (threshold() + kUnit - 1) / kUnit;
+  for (int angle = 0; angle < points_->angles(); ++angle) {
+    forEachBlock(angle, [&](const Block& block) {
+      if (block.bound >= least) heap_.push_back({block.bound * kUnit, block.number});
+    });
   }
   std::make_heap(heap_.begin(), heap_.end());
 }
@@ -148,13 +172,12 @@ void BlockSearch::split(const Block& block)
   if (has_right && has_lower) push({bounds[kColumns + kSmall], block.number + 4});
 }
 
-void BlockSearch::computeAll(const Block& block)
+void BlockSearch::computeAll(const Block& block, int side)
 {
   const GridPose first = firstPose(block);
   findOffsets(first);
-  const int columns = std::min(kSmall, grid_->half_i + 1 - first.i),
-            rows = std::min(kSmall, grid_->half_j + 1 - first.j);
-  std::array<std::uint32_t, kSmall * kColumns> sums;
+  const int columns = std::min(side, grid_->half_i + 1 - first.i), rows = std::min(side, grid_->half_j + 1 - first.j);
+  std::array<std::uint32_t, kBlock * kColumns> sums;
   sumSixteenColumns(tables_->cells(), tables_->stride(), offsets_.data(), points_->size(), rows, sums.data());
   GridPose best_here{first.k, first.j, first.i, sums[0]};
   for (int r = 0; r < rows; ++r) {

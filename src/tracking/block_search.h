@@ -52,12 +52,15 @@ class BlockSearch {
   };
 
   void boundBlocks();
+  template <class Visit>
+  void forEachBlock(int angle, Visit&& visit) const;
+  void fillHeap();
   void push(const Block& block);
   Block pop();
   GridPose firstPose(const Block& block) const;
   void findOffsets(const GridPose& first);
   void split(const Block& block);
-  void computeAll(const Block& block);
+  void computeAll(const Block& block, int side);
   void keepRival(const GridPose& pose);
   void dropRivalsFallenBehind();
   std::uint32_t threshold() const;

@@ -11,16 +11,18 @@
 
 namespace eyeslam::support {
 
-/// Random vessels as polylines that wander over a square of the map, one point every pixel; centred map px.
+/// Random vessels as polylines that wander over a square of the map, one point every pixel, 600 px at most; centred map
+/// px.
 inline tracking::ScanPoints randomVessels(std::mt19937& random, int vessels, double side_px)
 {
+  constexpr int kLongest_px = 600;
   std::uniform_real_distribution<double> place(-side_px / 2, side_px / 2), angle(-M_PI, M_PI);
   std::normal_distribution<double> bend(0.0, 0.03);
   tracking::ScanPoints points;
   for (int vessel = 0; vessel < vessels; ++vessel) {
     Eigen::Vector2d at(place(random), place(random));
     double direction = angle(random), turning = 0.0;
-    for (int step = 0; step < static_cast<int>(side_px) && at.cwiseAbs().maxCoeff() <= side_px / 2; ++step) {
+    for (int step = 0; step < kLongest_px && at.cwiseAbs().maxCoeff() <= side_px / 2; ++step) {
       points.emplace_back(at.cast<float>());
       turning = 0.9 * turning + 0.3 * bend(random);
       direction += turning;
