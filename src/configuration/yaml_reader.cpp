@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -59,7 +60,34 @@ std::string oneLine(std::string text)
   return text;
 }
 
-std::vector<YAML::Node> parse(const std::string& path)
+// Counts documents. YAML::LoadAll is no help: behind a tag that ends in a value it finds documents for ever (0.7).
+class DocumentCounter : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark&) override { ++documents_; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+
+  int documents() const { return documents_; }
+
+ private:
+  int documents_ = 0;
+};
+
+bool hasSeveralDocuments(std::istream& text)
+{
+  YAML::Parser parser(text);
+  DocumentCounter counter;
+  while (counter.documents() < 2 && parser.HandleNextDocument(counter)) continue;
+  return counter.documents() > 1;
+}
+
+YAML::Node parse(const std::string& path)
 {
   std::ifstream file(path);
   // A folder opens, but nothing can be read from it.
@@ -68,7 +96,10 @@ std::vector<YAML::Node> parse(const std::string& path)
     throw ConfigurationError(fmt::format("{}: cannot be read; a YAML file is wanted", path));
   }
   try {
-    return YAML::LoadAll(file);
+    if (hasSeveralDocuments(file)) throw ConfigurationError(path + ": holds several YAML documents; one is wanted");
+    file.clear();
+    file.seekg(0);
+    return YAML::Load(file);
   } catch (const YAML::Exception& error) {
     throw ConfigurationError(fmt::format("{}:{}: is no YAML: {}", path, error.mark.line + 1, oneLine(error.msg)));
   }
@@ -78,12 +109,11 @@ std::vector<YAML::Node> parse(const std::string& path)
 
 std::vector<Assignment> readYaml(const std::string& path)
 {
-  const std::vector<YAML::Node> documents = parse(path);
-  if (documents.size() > 1) throw ConfigurationError(path + ": holds several YAML documents; one is wanted");
-  if (documents.empty() || documents[0].IsNull()) return {};
-  if (!documents[0].IsMap()) throw ConfigurationError(path + ": holds no 'key: value' lines");
+  const YAML::Node document = parse(path);
+  if (!document || document.IsNull()) return {};
+  if (!document.IsMap()) throw ConfigurationError(path + ": holds no 'key: value' lines");
   Flattener flattener(path);
-  flattener.add(documents[0], "", 0);
+  flattener.add(document, "", 0);
   return flattener.take();
 }
 
