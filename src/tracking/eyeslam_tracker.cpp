@@ -21,7 +21,8 @@ class EyeSlamTracker::Steps {
         localizer_(options),
         filter_(options.filter),
         occupancy_(options.occupancy),
-        mosaic_(options.mosaic)
+        mosaic_(options.mosaic),
+        anchor_(options.anchor, options.refiner)
   {}
 
   const TrackResult& track(const cv::Mat& image);
@@ -46,6 +47,8 @@ class EyeSlamTracker::Steps {
   PoseFilter filter_;
   OccupancyMap occupancy_;
   Mosaic mosaic_;
+  Anchor anchor_;
+  Pose2 last_pose_;  // of the last localized frame, frame px
   VesselPoints points_;
   ScanPoints chosen_;
   TrackResult result_;
@@ -67,13 +70,14 @@ const TrackResult& EyeSlamTracker::Steps::track(const cv::Mat& image)
   selector_.choose(points_, frame_.centre(), chosen_);
   if (mosaic_.empty()) return startMap();
   // Localize: B_t by scan matching around the prediction, refined and verified; then L_t.
-  const Localization found = localizer_.localize(frame_, mask_, chosen_, occupancy_, mosaic_, predicted);
+  const Localization found = localizer_.localize(frame_, mask_, chosen_, occupancy_, mosaic_, predicted, last_pose_);
   if (found.reason != Reason::none) return refuse(found.reason);
   const PoseEstimate map_T_frame = filter_.correct(found.pose);
   // Map: what is seen is added, what is seen missing decays, the rest stays.
   occupancy_.decay(mask_, {frame_.width(), frame_.height()}, map_T_frame.map_T_frame, result_.frame);
   occupancy_.add(chosen_, map_T_frame.map_T_frame);
   mosaic_.blend(frame_, mask_, map_T_frame.map_T_frame, found.sigma, result_.frame);
+  anchor_.update(mosaic_, result_.frame);
   return accept(map_T_frame, found);
 }
 
@@ -83,6 +87,7 @@ const TrackResult& EyeSlamTracker::Steps::startMap()
   filter_.reset(origin);
   occupancy_.add(chosen_, {});
   mosaic_.start(frame_, mask_);
+  anchor_.start(frame_, mask_);
   Localization found;
   found.pose = origin;
   return accept(origin, found);
@@ -101,7 +106,8 @@ const TrackResult& EyeSlamTracker::Steps::accept(const PoseEstimate& map_T_frame
   const Eigen::Vector3d unit(frame_.pixelSize().x(), frame_.pixelSize().y(), 1.0);
   result_.tracked = true;
   result_.reason = Reason::none;
-  result_.map_T_frame = inFullPixels(map_T_frame.map_T_frame);
+  result_.map_T_frame = inFullPixels(anchor_.mosaic_T_start().inverse() * map_T_frame.map_T_frame);
+  last_pose_ = map_T_frame.map_T_frame;
   result_.covariance = unit.asDiagonal() * map_T_frame.covariance * unit.asDiagonal();
   result_.points = static_cast<int>(chosen_.size());
   result_.score = found.score;

@@ -9,7 +9,11 @@ namespace eyeslam::tracking {
 struct Localizer::View {
   const Frame& frame;
   const OcclusionMask& mask;
+  const ScanPoints& points;
+  const OccupancyMap& occupancy;
   const Mosaic& mosaic;
+  const PosePrediction& predicted;
+  const retina::Pose2& last_pose;
 };
 
 Localizer::Localizer(const TrackerOptions& options)
@@ -17,7 +21,9 @@ Localizer::Localizer(const TrackerOptions& options)
       cell_px_(options.occupancy.cell_px),
       matcher_(options.matcher),
       relocalizer_(options.relocalizer),
-      refiner_(options.refiner)
+      dense_search_(options.dense),
+      refiner_(options.refiner),
+      smear_model_(options.smear, options.refiner)
 {
   template_.reserve(1 << 14);
 }
@@ -28,46 +34,80 @@ void Localizer::restart()
   running_ncc_ = 0.0;
 }
 
-// Refines a candidate and compares it with the mosaic; remembers it when it is the best so far.
-bool Localizer::confirm(const View& view, const MatchResult& match, bool wide)
-{
-  collectTemplate(view.mosaic, view.frame, view.mask, match.map_T_frame, template_);
-  const Refinement refined = refiner_.refine(view.frame.contrast(), template_, match.map_T_frame, Freedom::rigid);
-  if (!refined.converged || refined.ncc < options_.least_ncc) return false;
-  if (refined.ncc > best_.ncc) {
-    best_ = {retina::Reason::none,
-             {refined.map_T_frame, refined.covariance.topLeftCorner<3, 3>()},
-             match.score,
-             refined.ncc,
-             refined.sigma};
-  }
-  return !wide || refined.ncc >= options_.wide_ncc_share * running_ncc_;
-}
-
 Localization Localizer::localize(const Frame& frame, const OcclusionMask& mask, const ScanPoints& points,
-                                 const OccupancyMap& occupancy, const Mosaic& mosaic, const PosePrediction& predicted)
+                                 const OccupancyMap& occupancy, const Mosaic& mosaic, const PosePrediction& predicted,
+                                 const retina::Pose2& last_pose)
 {
-  const View view{frame, mask, mosaic};
+  const View view{frame, mask, points, occupancy, mosaic, predicted, last_pose};
   best_ = {};
   best_.reason = retina::Reason::poor_match;
-  const auto found = [&](const MatchResult& match, bool wide) {
-    return match.reason == retina::Reason::none && confirm(view, match, wide);
-  };
-  const auto searchWide = [&] {
-    few_.assign(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(
-                                                     points.size(), static_cast<std::size_t>(options_.wide_points))));
-    const double reach = options_.wide_cells * cell_px_;
-    const double step = cell_px_ / std::hypot(frame.centre().x(), frame.centre().y());
-    return matcher_.search(few_, occupancy, {predicted.map_T_frame, reach, reach, options_.wide_steps * step});
-  };
-  const MatchResult unmatched{retina::Reason::none, predicted.map_T_frame, 0.0, predicted.covariance};
-  if (found(matcher_.match(points, occupancy, predicted), false) || found(searchWide(), true) ||
-      found(unmatched, true) || found(relocalizer_.search(points, occupancy, predicted.map_T_frame), true) ||
-      best_.reason == retina::Reason::none) {
+  const bool confirmed = matchNear(view) || matchWide(view) || matchDense(view) || matchAnywhere(view);
+  if (confirmed || best_.reason == retina::Reason::none) {
     relocalizer_.restart();
     running_ncc_ = running_ncc_ > 0.0 ? 0.9 * running_ncc_ + 0.1 * best_.ncc : best_.ncc;
   }
   return best_;
+}
+
+// Around the prediction. Without a match the prediction itself may still be right: few points, but texture.
+bool Localizer::matchNear(const View& view)
+{
+  const MatchResult match = matcher_.match(view.points, view.occupancy, view.predicted);
+  if (match.reason != retina::Reason::none) return false;
+  return confirm(view, match.map_T_frame, match.score, Trust::expected);
+}
+
+bool Localizer::matchWide(const View& view)
+{
+  const auto most = std::min(view.points.size(), static_cast<std::size_t>(options_.wide_points));
+  few_.assign(view.points.begin(), view.points.begin() + static_cast<std::ptrdiff_t>(most));
+  const double reach = options_.wide_cells * cell_px_;
+  const double step = cell_px_ / std::hypot(view.frame.centre().x(), view.frame.centre().y());
+  const MatchResult match =
+      matcher_.search(few_, view.occupancy, {view.predicted.map_T_frame, reach, reach, options_.wide_steps * step});
+  if (match.reason != retina::Reason::none) return false;
+  return confirm(view, match.map_T_frame, match.score, Trust::surprising);
+}
+
+// Too smeared for points: the dark and bright areas still correlate.
+bool Localizer::matchDense(const View& view)
+{
+  const auto found = dense_search_.find(view.mosaic, view.frame, view.mask, view.predicted.map_T_frame);
+  return found && confirm(view, *found, 0.0, Trust::surprising);
+}
+
+bool Localizer::matchAnywhere(const View& view)
+{
+  const MatchResult match = relocalizer_.search(view.points, view.occupancy, view.predicted.map_T_frame);
+  if (match.reason == retina::Reason::searching && best_.reason != retina::Reason::none) best_.reason = match.reason;
+  if (match.reason != retina::Reason::none) return false;
+  return confirm(view, match.map_T_frame, match.score, Trust::surprising);
+}
+
+// Refines a candidate, smeared where the view moved fast, and compares it with the mosaic; keeps it when it is the best
+// so far. A wrong angle may pass the plain threshold, so a surprising place must correlate nearly as well as frames
+// usually do.
+bool Localizer::confirm(const View& view, const retina::Pose2& start, double score, Trust trust)
+{
+  collectTemplate(view.mosaic, view.frame, view.mask, start, template_);
+  Refinement refined = refiner_.refine(view.frame.contrast(), template_, start, Freedom::rigid);
+  const Eigen::Vector2d motion = refined.map_T_frame.translation() - view.last_pose.translation();
+  const SmearModelOptions& smear = smear_model_.options();
+  if (motion.norm() > smear.least_motion_px && refined.ncc < smear.ncc_share * running_ncc_) {
+    const Refinement smeared =
+        smear_model_.refine(view.mosaic, view.frame, template_, refined.converged ? refined.map_T_frame : start, motion,
+                            Freedom::rigid, 1.0);
+    if (smeared.converged && smeared.ncc > refined.ncc) refined = smeared;
+  }
+  if (!refined.converged || refined.ncc < options_.least_ncc) return false;
+  if (refined.ncc > best_.ncc) {
+    best_ = {retina::Reason::none,
+             {refined.map_T_frame, refined.covariance.topLeftCorner<3, 3>()},
+             score,
+             refined.ncc,
+             refined.sigma};
+  }
+  return trust == Trust::expected || refined.ncc >= options_.wide_ncc_share * running_ncc_;
 }
 
 }  // namespace eyeslam::tracking

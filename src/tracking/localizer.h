@@ -4,12 +4,14 @@
 #include <Eigen/Core>
 
 #include "eyeslam/tracking/alignment_template.h"
+#include "eyeslam/tracking/dense_search.h"
 #include "eyeslam/tracking/frame.h"
 #include "eyeslam/tracking/mosaic.h"
 #include "eyeslam/tracking/occlusion_mask.h"
 #include "eyeslam/tracking/refiner.h"
 #include "eyeslam/tracking/relocalizer.h"
 #include "eyeslam/tracking/scan_matcher.h"
+#include "eyeslam/tracking/smear_model.h"
 #include "eyeslam/tracking/tracker_options.h"
 
 namespace eyeslam::tracking {
@@ -31,19 +33,28 @@ class Localizer {
   explicit Localizer(const TrackerOptions& options);
 
   void restart();
-  /// @param points  chosen points of the frame, centred frame px
+  /// @param points     chosen points of the frame, centred frame px
+  /// @param last_pose  of the last frame that was localized: the view has moved since
   Localization localize(const Frame& frame, const OcclusionMask& mask, const ScanPoints& points,
-                        const OccupancyMap& occupancy, const Mosaic& mosaic, const PosePrediction& predicted);
+                        const OccupancyMap& occupancy, const Mosaic& mosaic, const PosePrediction& predicted,
+                        const retina::Pose2& last_pose);
 
  private:
   struct View;  // what all searches of one frame share
-  bool confirm(const View& view, const MatchResult& match, bool wide);
+  enum class Trust { expected, surprising };
+  bool confirm(const View& view, const retina::Pose2& start, double score, Trust trust);
+  bool matchNear(const View& view);
+  bool matchWide(const View& view);
+  bool matchDense(const View& view);
+  bool matchAnywhere(const View& view);
 
   LocalizerOptions options_;
   double cell_px_;
   ScanMatcher matcher_;
   Relocalizer relocalizer_;
+  DenseSearch dense_search_;
   Refiner refiner_;
+  SmearModel smear_model_;
   AlignmentTemplate template_;
   ScanPoints few_;
   Localization best_;

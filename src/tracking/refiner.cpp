@@ -139,11 +139,12 @@ Refiner::NormalEquations Refiner::accumulate(std::size_t begin, std::size_t end,
   return result;
 }
 
-double Refiner::correlation() const
+// Over the pixels that the robust deviation explains: streaks of blooms and the instrument would outvote the vessels.
+double Refiner::correlation(double cut) const
 {
   double n = 0.0, a = 0.0, b = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
   for (std::size_t i = 0; i < residual_.size(); ++i) {
-    if (residual_[i] >= kOutside) continue;
+    if (std::abs(residual_[i]) >= cut) continue;
     const double u = value_[i];
     const double v = u + static_cast<double>(residual_[i]);
     n += 1.0;
@@ -234,7 +235,7 @@ Refinement Refiner::refine(const cv::Mat_<std::int16_t>& contrast, const Alignme
   result.sigma = robustSigma();
   cut = options_.cut_sigmas * result.sigma;
   normal = accumulate(0, residual_.size(), cut);
-  result.ncc = correlation();
+  result.ncc = correlation(options_.ncc_sigmas * result.sigma);
   result.covariance = covarianceOf(pixels, normal, cut, freedom);
   result.converged = result.covariance.allFinite();
   return result;

@@ -22,6 +22,7 @@ struct RefinerOptions {
   double last_step_px = 0.004;
   double cut_sigmas = 3.0;
   double first_cut_sigmas = 6.0;
+  double ncc_sigmas = 4.0;
   double least_sigma = 0.002;
   int least_pixels = 60;
 
@@ -38,6 +39,8 @@ struct RefinerOptions {
                   "Tukey weights reach zero here; source: tracker study 2.9 (2 or 4 within 7 %)");
     visitor.field("first_cut_sigmas", self.first_cut_sigmas, Range{1.0, 100.0}, "robust sigmas",
                   "the same in the first step; source: tracker study 2.9");
+    visitor.field("ncc_sigmas", self.ncc_sigmas, Range{1.0, 1000.0}, "robust sigmas",
+                  "pixels farther off do not count in the correlation; source: saccades of the rendered sequences");
     visitor.field("least_sigma", self.least_sigma, Range{1e-6, 1.0}, "of the background",
                   "robust deviation is never taken smaller; source: tracker study 2.9");
     visitor.field("least_pixels", self.least_pixels, Range{8, 100000}, "pixels", "fewer give no refinement");
@@ -81,7 +84,7 @@ class Refiner {
                         const retina::Pose2& pose, std::size_t stride);
   double robustSigma() const;
   NormalEquations accumulate(std::size_t begin, std::size_t end, double cut) const;
-  double correlation() const;
+  double correlation(double cut) const;
   Eigen::Matrix4d covarianceOf(const AlignmentTemplate& pixels, const NormalEquations& all, double cut,
                                Freedom freedom) const;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "eyeslam/tracking/smear_model.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "eyeslam/tracking/cubic_sampler.h"
@@ -35,7 +36,7 @@ Refinement SmearModel::refine(const Mosaic& mosaic, const Frame& frame, const Al
 {
   const double length = motion.norm();
   const Eigen::Vector2d whole = length > kLongest_px ? Eigen::Vector2d(motion * (kLongest_px / length)) : motion;
-  const int reach = static_cast<int>(std::ceil(std::min(length, kLongest_px) * 0.6)) + 4;
+  const int reach = static_cast<int>(std::ceil(std::min(length, kLongest_px) * 1.2)) + 4;
   region_ = viewBox({frame.width(), frame.height()}, start, mosaic.centre());
   region_ = {region_.x - reach, region_.y - reach, region_.width + 2 * reach, region_.height + 2 * reach};
   mosaic_centre_ = mosaic.centre();
@@ -44,17 +45,23 @@ Refinement SmearModel::refine(const Mosaic& mosaic, const Frame& frame, const Al
   Refinement best;
   best.map_T_frame = start;
   double best_share = 0.0;
-  const auto attempt = [&](double share) {
+  const auto attempt = [&](double share, double ahead) {
     smear(sharp, share * whole, kSearchStride, smeared_);
-    const Refinement found = quick_.refine(frame.contrast(), smeared_, best.map_T_frame, freedom, scale_sigma);
-    if (!found.converged || found.ncc <= best.ncc) return;
+    retina::Pose2 from = best.map_T_frame;
+    from.x += ahead * share * whole.x();
+    from.y += ahead * share * whole.y();
+    const Refinement found = quick_.refine(frame.contrast(), smeared_, from, freedom, scale_sigma);
+    // The robust deviation, not the correlation: blooms and burns leave streaks that outvote the vessels.
+    if (!found.converged || (best.converged && found.sigma >= best.sigma)) return;
     best = found;
     best_share = share;
   };
-  for (const double share : {0.3, 0.5, 0.7, 1.0}) attempt(share);
-  if (best_share == 0.0) return best;
+  for (const double share : {0.3, 0.5, 0.7, 1.0, 1.5, 2.0}) attempt(share, 0.0);
+  if (!best.converged) return best;
+  // A sharp template may have caught one end of the smear: look from both.
+  for (const double ahead : {-0.3, 0.3}) attempt(best_share, ahead);
   const double centre = best_share;
-  for (const double factor : {0.85, 1.15}) attempt(centre * factor);
+  for (const double factor : {0.85, 1.15}) attempt(centre * factor, 0.0);
   smear(sharp, best_share * whole, 1, smeared_);
   const Refinement refined = full_.refine(frame.contrast(), smeared_, best.map_T_frame, freedom, scale_sigma);
   return refined.converged ? refined : best;

@@ -28,7 +28,8 @@ struct SmearModelOptions {
 };
 
 /// A view that moves during the exposure shows the mosaic smeared along its motion; so the template is smeared alike,
-/// over the share of the frame period that fits best, and the pose is the middle of the exposure (tracker study, 2.11).
+/// over the share of the last frame's motion that fits best, and the pose is the middle of the exposure (tracker study,
+/// 2.11). The share may exceed one: a saccade that has just begun is faster than the step that it has made so far.
 class SmearModel {
  public:
   SmearModel(const SmearModelOptions& options, const RefinerOptions& refiner);

@@ -4,6 +4,8 @@
 #include <string>
 
 #include "eyeslam/retina/options.h"
+#include "eyeslam/tracking/anchor.h"
+#include "eyeslam/tracking/dense_search.h"
 #include "eyeslam/tracking/frame.h"
 #include "eyeslam/tracking/mosaic.h"
 #include "eyeslam/tracking/occlusion_mask.h"
@@ -14,6 +16,7 @@
 #include "eyeslam/tracking/relocalizer.h"
 #include "eyeslam/tracking/ridge_detector.h"
 #include "eyeslam/tracking/scan_matcher.h"
+#include "eyeslam/tracking/smear_model.h"
 
 namespace eyeslam::tracking {
 
@@ -57,10 +60,13 @@ struct TrackerOptions {
   ScanMatcherOptions matcher;
   RelocalizerOptions relocalizer;
   LocalizerOptions localizer;
+  DenseSearchOptions dense;
   RefinerOptions refiner;
+  SmearModelOptions smear;
   PoseFilterOptions filter;
   OccupancyMapOptions occupancy;
   MosaicOptions mosaic;
+  AnchorOptions anchor;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor& visitor)
@@ -74,10 +80,13 @@ struct TrackerOptions {
     visitor.group("matcher", self.matcher);
     visitor.group("relocalizer", self.relocalizer);
     visitor.group("localizer", self.localizer);
+    visitor.group("dense", self.dense);
     visitor.group("refiner", self.refiner);
+    visitor.group("smear", self.smear);
     visitor.group("filter", self.filter);
     visitor.group("occupancy", self.occupancy);
     visitor.group("mosaic", self.mosaic);
+    visitor.group("anchor", self.anchor);
   }
 };
 
