@@ -39,8 +39,9 @@ Eigen::Matrix3d madeUsable(const Eigen::Matrix3d& covariance)
   const double most = kMost_rad * kMost_rad / (kLeast_rad * kLeast_rad);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scaled.cwiseMax(-most).cwiseMin(most));
   const Eigen::Vector3d values = eigen.eigenvalues().cwiseMax(1.0).cwiseMin(most);
-  const Eigen::Matrix3d usable = eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
-  return unit.asDiagonal() * (0.5 * (usable + usable.transpose())).eval() * unit.asDiagonal();
+  const Eigen::Matrix3d bounded = eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+  const Eigen::Matrix3d usable = unit.asDiagonal() * bounded * unit.asDiagonal();
+  return 0.5 * (usable + usable.transpose());
 }
 
 }  // namespace
