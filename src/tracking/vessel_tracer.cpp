@@ -16,7 +16,8 @@ constexpr int kBin = 4;       // of the histograms of levels, 1 / Frame::kContra
 constexpr int kBins = 512;
 constexpr double kMedianOfDifferences = 0.954;  // of two normal samples, in sigma: 0.6745 sqrt 2
 constexpr std::size_t kSeeds = 4096;
-constexpr int kOwnSteps = 8;  // a trace may touch what it claimed so few steps ago
+constexpr int kOwnSteps = 8;         // a trace may touch what it claimed so few steps ago
+constexpr double kUsualSteps = 8.0;  // what is usual follows a vessel that tapers, over so many steps
 constexpr int kNarrowestClaim = 2;
 constexpr int kMostClaims = 65000;  // labels have 16 bits
 constexpr float kHalfTurn = static_cast<float>(CV_PI);
@@ -188,6 +189,7 @@ void VesselTracer::follow(Place place, const OcclusionMask& mask, VesselPoints& 
 {
   const std::size_t first = points.size();
   const auto step = static_cast<float>(options_.step_px);
+  double usual = place.edges.sum();
   int weak = 0;
   while (!isFull(points)) {
     const Eigen::Vector2f& along = kernels_.direction(place.direction);
@@ -196,7 +198,10 @@ void VesselTracer::follow(Place place, const OcclusionMask& mask, VesselPoints& 
     if (!mask.isVisible(round(x), round(y))) break;
     place = bestPlace(place, round(x), round(y));
     if (!isFree(place, mask)) break;
-    weak = isStrong(place, levelsAt(round(place.x), round(place.y)).go_on) ? 0 : weak + 1;
+    const int least =
+        std::max(levelsAt(round(place.x), round(place.y)).go_on, static_cast<int>(options_.fading * usual));
+    weak = isStrong(place, least) ? 0 : weak + 1;
+    if (weak == 0) usual += (place.edges.sum() - usual) / kUsualSteps;
     if (weak > options_.weak_steps) {
       --weak;
       break;

@@ -19,7 +19,8 @@ struct VesselTracerOptions {
   double edge_strength = 3.6;
   double lowest_strength = 0.02;
   double weaker_edge = 0.25;
-  int farthest_edge_px = 7;
+  double fading = 0.5;
+  int farthest_edge_px = 8;
   double step_px = 2.5;
   int turn = 2;
   int weak_steps = 2;
@@ -43,8 +44,10 @@ struct VesselTracerOptions {
                   "least sum of both edge responses however calm the picture; source: tracker study 2.5 (0.03)");
     visitor.field("weaker_edge", self.weaker_edge, Range{0.0, 1.0}, "of the stronger edge",
                   "a vessel has two edges, a shaft or a bloom one; source: eyeslam-bench detect");
+    visitor.field("fading", self.fading, Range{0.0, 1.0}, "of the last steps' mean",
+                  "a step with weaker edges is weak: traces end where vessels do; source: ends of drawn vessels");
     visitor.field("farthest_edge_px", self.farthest_edge_px, Range{2, TracingKernels::kFarthestEdge}, "frame px",
-                  "half of the widest vessel; source: facts A2.3 (1 to 7 px)");
+                  "half of the widest vessel, along an axis; source: facts A2.3 (7 px, at 45 deg 8 are 6)");
     visitor.field("step_px", self.step_px, Range{1.0, 5.0}, "frame px",
                   "between two points of a trace; source: facts A2.3 (2 to 3 px)");
     visitor.field("turn", self.turn, Range{1, 3}, "steps of 22.5 deg",
