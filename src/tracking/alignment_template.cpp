@@ -7,6 +7,35 @@ namespace {
 
 constexpr float kBorder_px = 5.0F;  // so that a pixel stays inside while the pose moves by a little
 
+// Tells which map pixels a frame at a given pose shows.
+class Visibility {
+ public:
+  Visibility(const Frame& frame, const OcclusionMask& mask, const retina::Pose2& map_T_frame)
+      : hidden_(mask.cells()),
+        linear_(map_T_frame.inverse().linear().cast<float>()),
+        shift_(map_T_frame.translation().cast<float>()),
+        centre_(frame.centre().cast<float>()),
+        right_(static_cast<float>(frame.width() - 1) - kBorder_px),
+        bottom_(static_cast<float>(frame.height() - 1) - kBorder_px)
+  {}
+
+  // x, y: centred map px.
+  bool operator()(float x, float y) const
+  {
+    const Eigen::Vector2f p = linear_ * (Eigen::Vector2f(x, y) - shift_) + centre_;
+    if (!(p.x() >= kBorder_px && p.y() >= kBorder_px && p.x() <= right_ && p.y() <= bottom_)) return false;
+    const int row = static_cast<int>(p.y() + 0.5F) / Frame::kCell,
+              column = static_cast<int>(p.x() + 0.5F) / Frame::kCell;
+    return hidden_(row, column) == OcclusionMask::kVisible;
+  }
+
+ private:
+  const cv::Mat_<std::uint8_t>& hidden_;
+  Eigen::Matrix2f linear_;
+  Eigen::Vector2f shift_, centre_;
+  float right_, bottom_;
+};
+
 }  // namespace
 
 void AlignmentTemplate::clear()
@@ -34,29 +63,35 @@ void collectTemplate(const Mosaic& mosaic, const Frame& frame, const OcclusionMa
                      const retina::Pose2& map_T_frame, AlignmentTemplate& pixels)
 {
   pixels.clear();
+  const Visibility visible(frame, mask, map_T_frame);
   const cv::Rect box = viewBox({frame.width(), frame.height()}, map_T_frame, mosaic.centre());
-  const Eigen::Matrix2f linear = map_T_frame.inverse().linear().cast<float>();
-  const Eigen::Vector2f shift = (map_T_frame.translation() + mosaic.centre()).cast<float>();
-  const Eigen::Vector2f frame_centre = frame.centre().cast<float>();
-  const Eigen::Vector2f map_centre = mosaic.centre().cast<float>();
-  const float right = static_cast<float>(frame.width() - 1) - kBorder_px;
-  const float bottom = static_cast<float>(frame.height() - 1) - kBorder_px;
-  const cv::Mat_<std::uint8_t>& hidden = mask.cells();
+  const Eigen::Vector2f centre = mosaic.centre().cast<float>();
   for (int ty = floorDivide(box.y, Mosaic::kTile); ty <= floorDivide(box.br().y - 1, Mosaic::kTile); ++ty) {
     for (int tx = floorDivide(box.x, Mosaic::kTile); tx <= floorDivide(box.br().x - 1, Mosaic::kTile); ++tx) {
       const Mosaic::Tile* tile = mosaic.tiles().find(tx, ty);
       if (!tile) continue;
       const std::size_t begin = pixels.size();
       for (const Mosaic::TemplatePixel& pixel : tile->pixels) {
-        if (!pixel.valid) continue;
-        const Eigen::Vector2f p = linear * (Eigen::Vector2f(pixel.x, pixel.y) - shift) + frame_centre;
-        if (!(p.x() >= kBorder_px && p.y() >= kBorder_px && p.x() <= right && p.y() <= bottom)) continue;
-        if (hidden(static_cast<int>(p.y() + 0.5F) / Frame::kCell, static_cast<int>(p.x() + 0.5F) / Frame::kCell))
-          continue;
-        pixels.push(pixel.x - map_centre.x(), pixel.y - map_centre.y(), pixel.value, pixel.gx, pixel.gy);
+        const float x = pixel.x - centre.x(), y = pixel.y - centre.y();
+        if (pixel.valid && visible(x, y)) pixels.push(x, y, pixel.value, pixel.gx, pixel.gy);
       }
       if (pixels.size() > begin) pixels.cluster_begins.push_back(begin);
     }
+  }
+}
+
+void selectVisible(const AlignmentTemplate& pixels, const Frame& frame, const OcclusionMask& mask,
+                   const retina::Pose2& map_T_frame, AlignmentTemplate& visible_pixels)
+{
+  visible_pixels.clear();
+  const Visibility visible(frame, mask, map_T_frame);
+  for (std::size_t c = 0; c < pixels.cluster_begins.size(); ++c) {
+    const std::size_t begin = visible_pixels.size();
+    for (std::size_t i = pixels.cluster_begins[c]; i < pixels.clusterEnd(c); ++i) {
+      if (!visible(pixels.x[i], pixels.y[i])) continue;
+      visible_pixels.push(pixels.x[i], pixels.y[i], pixels.value[i], pixels.gx[i], pixels.gy[i]);
+    }
+    if (visible_pixels.size() > begin) visible_pixels.cluster_begins.push_back(begin);
   }
 }
 

@@ -34,4 +34,8 @@ struct AlignmentTemplate {
 void collectTemplate(const Mosaic& mosaic, const Frame& frame, const OcclusionMask& mask,
                      const retina::Pose2& map_T_frame, AlignmentTemplate& pixels);
 
+/// Fills `visible` with those of `pixels` that a frame at this pose sees, unmasked and away from its border.
+void selectVisible(const AlignmentTemplate& pixels, const Frame& frame, const OcclusionMask& mask,
+                   const retina::Pose2& map_T_frame, AlignmentTemplate& visible);
+
 }  // namespace eyeslam::tracking

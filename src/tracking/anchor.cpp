@@ -43,6 +43,11 @@ void Anchor::update(const Mosaic& mosaic, std::int64_t frames_since_start)
   now_.theta += share * (goal_.theta - now_.theta);
 }
 
+void Anchor::restore(Mosaic& mosaic) const
+{
+  if (next_ <= options_.first_frame) mosaic.start(contrast_, hidden_);
+}
+
 void Anchor::registerStart(const Mosaic& mosaic)
 {
   collect(mosaic);

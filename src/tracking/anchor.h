@@ -42,6 +42,9 @@ class Anchor {
   void start(const Frame& frame, const OcclusionMask& mask);
   /// Registers frame 0 when its turn has come, and moves a step towards the last result.
   void update(const Mosaic& mosaic, std::int64_t frames_since_start);
+  /// Starts the mosaic again from frame 0, when it turns out that what was added since had the wrong scale; not when
+  /// more than frame 0 would be lost.
+  void restore(Mosaic& mosaic) const;
   /// Pose of frame 0 in the mosaic, frame px; near the identity.
   const retina::Pose2& mosaic_T_start() const { return now_; }
 

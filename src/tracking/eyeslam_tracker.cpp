@@ -22,7 +22,8 @@ class EyeSlamTracker::Steps {
         filter_(options.filter),
         occupancy_(options.occupancy),
         mosaic_(options.mosaic),
-        anchor_(options.anchor, options.refiner)
+        anchor_(options.anchor, options.refiner),
+        scale_(options.scale, options.refiner)
   {}
 
   const TrackResult& track(const cv::Mat& image);
@@ -48,6 +49,7 @@ class EyeSlamTracker::Steps {
   OccupancyMap occupancy_;
   Mosaic mosaic_;
   Anchor anchor_;
+  ScaleEvidence scale_;
   Pose2 last_pose_;  // of the last localized frame, frame px
   VesselPoints points_;
   ScanPoints chosen_;
@@ -70,7 +72,9 @@ const TrackResult& EyeSlamTracker::Steps::track(const cv::Mat& image)
   selector_.choose(points_, frame_.centre(), chosen_);
   if (mosaic_.empty()) return startMap();
   // Localize: B_t by scan matching around the prediction, refined and verified; then L_t.
-  const Localization found = localizer_.localize(frame_, mask_, chosen_, occupancy_, mosaic_, predicted, last_pose_);
+  const Freedom freedom = scale_.isMagnified() ? Freedom::similarity : Freedom::rigid;
+  const Localization found =
+      localizer_.localize(frame_, mask_, chosen_, occupancy_, mosaic_, predicted, last_pose_, freedom);
   if (found.reason != Reason::none) return refuse(found.reason);
   const PoseEstimate map_T_frame = filter_.correct(found.pose);
   // Map: what is seen is added, what is seen missing decays, the rest stays.
@@ -78,6 +82,7 @@ const TrackResult& EyeSlamTracker::Steps::track(const cv::Mat& image)
   occupancy_.add(chosen_, map_T_frame.map_T_frame);
   mosaic_.blend(frame_, mask_, map_T_frame.map_T_frame, found.sigma, result_.frame);
   anchor_.update(mosaic_, result_.frame);
+  if (scale_.update(frame_, mask_, mosaic_, map_T_frame.map_T_frame, result_.frame)) anchor_.restore(mosaic_);
   return accept(map_T_frame, found);
 }
 
@@ -86,8 +91,9 @@ const TrackResult& EyeSlamTracker::Steps::startMap()
   const PoseEstimate origin{{}, 1e-6 * Eigen::Matrix3d::Identity()};
   filter_.reset(origin);
   occupancy_.add(chosen_, {});
-  mosaic_.start(frame_, mask_);
+  mosaic_.start(frame_.contrast(), mask_.cells());
   anchor_.start(frame_, mask_);
+  scale_.start(frame_, mosaic_, mask_);
   Localization found;
   found.pose = origin;
   return accept(origin, found);

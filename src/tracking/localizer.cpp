@@ -14,6 +14,7 @@ struct Localizer::View {
   const Mosaic& mosaic;
   const PosePrediction& predicted;
   const retina::Pose2& last_pose;
+  Freedom freedom;
 };
 
 Localizer::Localizer(const TrackerOptions& options)
@@ -36,9 +37,9 @@ void Localizer::restart()
 
 Localization Localizer::localize(const Frame& frame, const OcclusionMask& mask, const ScanPoints& points,
                                  const OccupancyMap& occupancy, const Mosaic& mosaic, const PosePrediction& predicted,
-                                 const retina::Pose2& last_pose)
+                                 const retina::Pose2& last_pose, Freedom freedom)
 {
-  const View view{frame, mask, points, occupancy, mosaic, predicted, last_pose};
+  const View view{frame, mask, points, occupancy, mosaic, predicted, last_pose, freedom};
   best_ = {};
   best_.reason = retina::Reason::poor_match;
   const bool confirmed = matchNear(view) || matchWide(view) || matchDense(view) || matchAnywhere(view);
@@ -90,13 +91,13 @@ bool Localizer::matchAnywhere(const View& view)
 bool Localizer::confirm(const View& view, const retina::Pose2& start, double score, Trust trust)
 {
   collectTemplate(view.mosaic, view.frame, view.mask, start, template_);
-  Refinement refined = refiner_.refine(view.frame.contrast(), template_, start, Freedom::rigid);
+  Refinement refined = refiner_.refine(view.frame.contrast(), template_, start, view.freedom, options_.scale_sigma);
   const Eigen::Vector2d motion = refined.map_T_frame.translation() - view.last_pose.translation();
   const SmearModelOptions& smear = smear_model_.options();
   if (motion.norm() > smear.least_motion_px && refined.ncc < smear.ncc_share * running_ncc_) {
     const Refinement smeared =
         smear_model_.refine(view.mosaic, view.frame, template_, refined.converged ? refined.map_T_frame : start, motion,
-                            Freedom::rigid, 1.0);
+                            view.freedom, options_.scale_sigma);
     if (smeared.converged && smeared.ncc > refined.ncc) refined = smeared;
   }
   if (!refined.converged || refined.ncc < options_.least_ncc) return false;

@@ -35,9 +35,10 @@ class Localizer {
   void restart();
   /// @param points     chosen points of the frame, centred frame px
   /// @param last_pose  of the last frame that was localized: the view has moved since
+  /// @param freedom    whether the scale is estimated as well
   Localization localize(const Frame& frame, const OcclusionMask& mask, const ScanPoints& points,
                         const OccupancyMap& occupancy, const Mosaic& mosaic, const PosePrediction& predicted,
-                        const retina::Pose2& last_pose);
+                        const retina::Pose2& last_pose, Freedom freedom);
 
  private:
   struct View;  // what all searches of one frame share

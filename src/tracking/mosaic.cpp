@@ -60,13 +60,13 @@ Mosaic::Mosaic(const MosaicOptions& options) : options_(options) {}
 
 void Mosaic::clear() { tiles_.clear(); }
 
-void Mosaic::start(const Frame& frame, const OcclusionMask& mask)
+void Mosaic::start(const cv::Mat_<std::int16_t>& contrast, const cv::Mat_<std::uint8_t>& hidden)
 {
   clear();
-  centre_ = frame.centre();
-  const cv::Rect box = viewBox({frame.width(), frame.height()}, {}, centre_);
-  for (int row = box.y; row < box.br().y; ++row) blendRow(frame, mask, {}, row, 0.0F);
-  for (int phase = 0; phase < kBlockHeight; ++phase) chooseTemplate(box, kBlockHeight, phase);
+  centre_ = {(contrast.cols - 1) / 2.0, (contrast.rows - 1) / 2.0};
+  const cv::Rect box = viewBox(contrast.size(), {}, centre_);
+  for (int row = box.y; row < box.br().y; ++row) blendRow(contrast, hidden, {}, row, 0.0F);
+  chooseTemplate(box, 1, 0);
 }
 
 void Mosaic::blend(const Frame& frame, const OcclusionMask& mask, const retina::Pose2& map_T_frame, double sigma,
@@ -79,26 +79,26 @@ void Mosaic::blend(const Frame& frame, const OcclusionMask& mask, const retina::
   const retina::Pose2 frame_T_map = map_T_frame.inverse();
   for (int row = box.y; row < box.br().y; ++row) {
     if (row - floorDivide(row, period) * period == phase) {
-      blendRow(frame, mask, frame_T_map, row, static_cast<float>(limit));
+      blendRow(frame.contrast(), mask.cells(), frame_T_map, row, static_cast<float>(limit));
     }
   }
   chooseTemplate(box, period, phase);
 }
 
-void Mosaic::blendRow(const Frame& frame, const OcclusionMask& mask, const retina::Pose2& frame_T_map, int row,
-                      float limit)
+void Mosaic::blendRow(const cv::Mat_<std::int16_t>& contrast, const cv::Mat_<std::uint8_t>& hidden,
+                      const retina::Pose2& frame_T_map, int row, float limit)
 {
   // Along a mosaic row the position in the frame moves by a constant step.
   const Eigen::Matrix2d linear = frame_T_map.linear();
-  const Eigen::Vector2d start = frame_T_map * Eigen::Vector2d(-centre_.x(), row - centre_.y()) + frame.centre();
+  const Eigen::Vector2d start = frame_T_map * Eigen::Vector2d(-centre_.x(), row - centre_.y()) +
+                                Eigen::Vector2d((contrast.cols - 1) / 2.0, (contrast.rows - 1) / 2.0);
   const Eigen::Vector2d step = linear.col(0);
   double from = -kReach, to = kReach;
   constexpr double kMargin = CubicSampler::kMargin;
-  clip(start.x(), step.x(), kMargin, frame.width() - 1 - kMargin, from, to);
-  clip(start.y(), step.y(), kMargin, frame.height() - 1 - kMargin, from, to);
+  clip(start.x(), step.x(), kMargin, contrast.cols - 1 - kMargin, from, to);
+  clip(start.y(), step.y(), kMargin, contrast.rows - 1 - kMargin, from, to);
 
-  const CubicSampler sample(frame.contrast());
-  const cv::Mat_<std::uint8_t>& hidden = mask.cells();
+  const CubicSampler sample(contrast);
   Tile* tile = nullptr;
   int tile_x = 0;
   const int ty = floorDivide(row, kTile);

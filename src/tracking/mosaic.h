@@ -73,8 +73,10 @@ class Mosaic {
 
   void clear();
   bool empty() const { return tiles_.empty(); }
-  /// Starts with frame 0, every row of it.
-  void start(const Frame& frame, const OcclusionMask& mask);
+  /// Forgets everything and starts with a frame's picture, every row of it.
+  /// @param contrast  Frame::contrast()
+  /// @param hidden    OcclusionMask::cells()
+  void start(const cv::Mat_<std::int16_t>& contrast, const cv::Mat_<std::uint8_t>& hidden);
   /// Blends the rows whose turn it is.
   /// @param map_T_frame  pose, frame px
   /// @param sigma        robust deviation of frame from mosaic, contrast units
@@ -91,7 +93,8 @@ class Mosaic {
   void read(const cv::Rect& region, cv::Mat_<std::int16_t>& mean, cv::Mat_<std::uint8_t>& count) const;
 
  private:
-  void blendRow(const Frame& frame, const OcclusionMask& mask, const retina::Pose2& frame_T_map, int row, float limit);
+  void blendRow(const cv::Mat_<std::int16_t>& contrast, const cv::Mat_<std::uint8_t>& hidden,
+                const retina::Pose2& frame_T_map, int row, float limit);
   void chooseTemplate(const cv::Rect& box, int period, int phase);
   void chooseInBlockRow(Tile& tile, int tx, int ty, int block_row);
   void gatherStrip(int tx, int ty, int block_row);

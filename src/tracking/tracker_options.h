@@ -15,6 +15,7 @@
 #include "eyeslam/tracking/refiner.h"
 #include "eyeslam/tracking/relocalizer.h"
 #include "eyeslam/tracking/ridge_detector.h"
+#include "eyeslam/tracking/scale_evidence.h"
 #include "eyeslam/tracking/scan_matcher.h"
 #include "eyeslam/tracking/smear_model.h"
 
@@ -29,6 +30,7 @@ struct LocalizerOptions {
   int wide_cells = 40;
   int wide_steps = 8;
   int wide_points = 250;
+  double scale_sigma = 0.002;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor& visitor)
@@ -47,6 +49,8 @@ struct LocalizerOptions {
     visitor.field("wide_steps", self.wide_steps, Range{1, 90}, "angular steps of one cell at the corner",
                   "half window of the second search; source: tracker study 2.8");
     visitor.field("wide_points", self.wide_points, Range{30, 5000}, "points", "source: tracker study 2.8");
+    visitor.field("scale_sigma", self.scale_sigma, Range{1e-5, 1.0}, "",
+                  "how far the scale may differ from the predicted, once it is free; source: tracker study 2.12");
   }
 };
 
@@ -67,6 +71,7 @@ struct TrackerOptions {
   OccupancyMapOptions occupancy;
   MosaicOptions mosaic;
   AnchorOptions anchor;
+  ScaleEvidenceOptions scale;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor& visitor)
@@ -87,6 +92,7 @@ struct TrackerOptions {
     visitor.group("occupancy", self.occupancy);
     visitor.group("mosaic", self.mosaic);
     visitor.group("anchor", self.anchor);
+    visitor.group("scale", self.scale);
   }
 };
 
