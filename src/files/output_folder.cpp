@@ -52,11 +52,9 @@ OutputFolder::OutputFolder(const std::string& path, std::vector<std::string> own
   staging_ = (existed_ ? folder_ : folder_.parent_path()) / prefix;
   removeLeftovers();
   staging_ += std::to_string(getpid());
-  if (!fs::create_directory(staging_, error) || !fs::create_directory(staging_ / "map", error)) {
-    const std::string cause = error ? error.message() : "another run writes there";
-    published_ = !fs::exists(staging_);  // nothing to remove
-    fail(folder_, cause);
-  }
+  if (fs::create_directory(staging_, error)) return;
+  removeParents();
+  fail(folder_, error ? error.message() : "another run writes there");
 }
 
 void OutputFolder::makeParents()
@@ -68,9 +66,18 @@ void OutputFolder::makeParents()
   }
   std::reverse(missing.begin(), missing.end());
   for (const fs::path& parent : missing) {
-    if (!fs::create_directory(parent, error)) fail(folder_, error.message());
+    if (!fs::create_directory(parent, error)) {
+      removeParents();
+      fail(folder_, error.message());
+    }
     made_parents_.push_back(parent);
   }
+}
+
+void OutputFolder::removeParents() const
+{
+  std::error_code ignored;  // another run may have put something there
+  for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) fs::remove(*parent, ignored);
 }
 
 // A run that was killed could not clean up after itself.
@@ -90,13 +97,14 @@ OutputFolder::~OutputFolder()
 {
   std::error_code ignored;  // nobody is left to be told
   fs::remove_all(staging_, ignored);
-  if (published_) return;
-  for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) fs::remove(*parent, ignored);
+  if (!published_) removeParents();
 }
 
 void OutputFolder::write(const std::string& name, const std::string& text) const
 {
   try {
+    std::error_code ignored;  // writing then says what is wrong
+    fs::create_directories(fs::path(staged(name)).parent_path(), ignored);
     writeWholeFile(staged(name), text);
   } catch (const FileError&) {
     fail(final(name), std::make_error_code(static_cast<std::errc>(errno)).message());

@@ -39,6 +39,7 @@ class OutputFolder {
 
  private:
   void makeParents();
+  void removeParents() const;
   void removeLeftovers() const;
   void moveIntoPlace(const std::string& name) const;
 

@@ -22,7 +22,7 @@ bool isLit(const cv::Mat& image)
 
 bool hasEqualChannels(const cv::Mat& image)
 {
-  constexpr double kRounding = 2.0 / 255.0;  // YUV to BGR and back
+  constexpr double kRounding = 4.0 / 255.0;  // BGR to YUV of limited range and back: up to 3 were seen
   if (image.channels() != 3) return false;
   cv::Mat blue, green, red;
   cv::extractChannel(image, blue, 0);

@@ -30,8 +30,12 @@ VideoFile::VideoFile(std::string path, std::string shown, VideoCoding coding, do
 void VideoFile::open(const cv::Mat& image)
 {
   if (image.depth() != CV_8U) throw FileError(shown_ + ": a video holds 8-bit frames only, these have 16 bit");
-  // H.264 with half the colour resolution knows even sizes only.
-  size_ = coding_ == VideoCoding::h264 ? cv::Size(image.cols & ~1, image.rows & ~1) : image.size();
+  // OpenCV's writer rounds down to even sizes, without a word.
+  size_ = {image.cols & ~1, image.rows & ~1};
+  if (coding_ == VideoCoding::lossless && size_ != image.size()) {
+    throw FileError(fmt::format("{}: frames of {} x {} cannot be kept without loss; even sizes are wanted", shown_,
+                                image.cols, image.rows));
+  }
   const int code = coding_ == VideoCoding::h264 ? cv::VideoWriter::fourcc('a', 'v', 'c', '1')
                                                 : cv::VideoWriter::fourcc('H', 'F', 'Y', 'U');
   if (size_.empty() || !writer_.open(path_, cv::CAP_FFMPEG, code, rate_, size_)) {

@@ -16,7 +16,8 @@ class VideoFile {
   /// @param path   where to write; `shown` names the file in messages
   VideoFile(std::string path, std::string shown, VideoCoding coding, double frames_per_second);
 
-  /// Adds a frame, 8 bit, grey or BGR; all of one size (h264: an odd last row or column is left out).
+  /// Adds a frame, 8 bit, grey or BGR; all of one size an odd last row or column is left out, or
+  /// refused where nothing may be lost.
   /// @throws FileError when the encoder cannot be started, or the frame is not like the first
   void add(const cv::Mat& image);
 

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eyeslam/configuration/listing.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <rapidcheck/gtest.h>
+#include <fstream>
+
+#include "configuration/test_options.h"
+#include "eyeslam/configuration/assignment.h"
+#include "support/temporary_folder.h"
+
+namespace eyeslam::configuration {
+namespace {
+
+using ::testing::HasSubstr;
+
+CameraOptions readBack(const std::string& yaml)
+{
+  const support::TemporaryFolder folder;
+  std::ofstream(folder.path("dump.yaml")) << yaml;
+  return applied(CameraOptions{}, readYaml(folder.path("dump.yaml")));
+}
+
+RC_GTEST_PROP(Listing, YamlReadsBackToTheSameValues, (double gain, int turns, bool coated))
+{
+  CameraOptions options;
+  options.gain = gain;
+  options.lens.turns = std::abs(turns % 11);
+  options.lens.coated = coated;
+  RC_ASSERT(canonicalOf(readBack(yamlOf(options))) == canonicalOf(options));
+}
+
+TEST(Listing, YamlTellsMeaningUnitAndRange)
+{
+  const std::string yaml = yamlOf(CameraOptions{});
+  EXPECT_THAT(
+      yaml, HasSubstr("lens:\n  # how far it sees; source: the maker\n  focus_mm: 12.5  # a number in [1, 100]; mm\n"));
+  EXPECT_THAT(yaml, HasSubstr("\ngain: 0.1"));  // back outside the group
+}
+
+TEST(Listing, MarkdownHasARowForEachOption)
+{
+  const std::string text = markdownOf(CameraOptions{});
+  EXPECT_THAT(text, HasSubstr("| `lens.turns` | 3 | a whole number in [0, 10] | of the ring; source: counted |"));
+  EXPECT_THAT(text, HasSubstr("glare \\| haze"));
+}
+
+TEST(Listing, CanonicalFormIsSortedAndComplete)
+{
+  EXPECT_EQ(canonicalOf(CameraOptions{}),
+            "gain=0.1\nkind=colour\nlens.coated=true\nlens.focus_mm=12.5\nlens.turns=3\n");
+}
+
+// printf 'gain=0.1\nkind=colour\nlens.coated=true\nlens.focus_mm=12.5\nlens.turns=3\n' | sha256sum
+TEST(Listing, HashIsThatOfTheCanonicalForm)
+{
+  EXPECT_EQ(hashOf(CameraOptions{}), "8bdce0506814489c715b9ec25233a5414b2d21f675f7c477771c1e9b47513d5c");
+}
+
+TEST(Listing, HashChangesWithEachOption)
+{
+  const std::string before = hashOf(CameraOptions{});
+  for (const auto& [key, text] : {std::pair{"kind", "grey"},
+                                  {"lens.focus_mm", "13"},
+                                  {"lens.turns", "4"},
+                                  {"lens.coated", "false"},
+                                  {"gain", "0.10000000000000002"}}) {
+    EXPECT_NE(hashOf(applied(CameraOptions{}, {{key, text, "test"}})), before) << key;
+  }
+}
+
+}  // namespace
+}  // namespace eyeslam::configuration
