@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "eyeslam/files/encoded_video.h"
 #include "eyeslam/files/file_error.h"
 #include "eyeslam/files/test_sequence.h"
 #include "eyeslam/files/video_file.h"
@@ -20,6 +21,7 @@ namespace files = eyeslam::files;
 namespace simulation = eyeslam::simulation;
 
 constexpr double kRadToDeg = 57.29577951308232;
+constexpr int kCrf = 18;  // of the sequences with truth
 
 struct Arguments {
   std::string out, condition = "human", motion, retina = "procedural", vessels, size;
@@ -86,14 +88,20 @@ void render(const Arguments& arguments)
   files::OutputFolder folder(arguments.out,
                              {"video.mp4", "video.mkv", "truth.csv", "tool.csv", "vessels.png", "meta.json"});
   const std::string video_name = arguments.lossless ? "video.mkv" : "video.mp4";
-  files::VideoFile video(folder.staged(video_name), folder.final(video_name),
-                         arguments.lossless ? files::VideoCoding::lossless : files::VideoCoding::h264, options.fps);
-  files::TestSequence sequence = headOf(renderer, options, condition.name);
-  while (const auto frame = renderer.next()) {
-    video.add(frame->image);
-    append(*frame, sequence);
-  }
-  video.close();
+  const auto rendered = [&](auto&& video) {
+    files::TestSequence sequence = headOf(renderer, options, condition.name);
+    while (const auto frame = renderer.next()) {
+      video.add(frame->image);
+      append(*frame, sequence);
+    }
+    video.close();
+    return sequence;
+  };
+  const std::string staged = folder.staged(video_name);
+  const std::string shown = folder.final(video_name);
+  const files::TestSequence sequence =
+      arguments.lossless ? rendered(files::VideoFile(staged, shown, files::VideoCoding::lossless, options.fps))
+                         : rendered(files::EncodedVideo(staged, shown, options.size, options.fps, kCrf));
   files::writeTestSequence(sequence, folder);
   folder.publish();
 }
@@ -115,8 +123,6 @@ int main(int argc, char** argv)
   app.add_option("--seed", arguments.seed);
   app.add_flag("--lossless", arguments.lossless);
   CLI11_PARSE(app, argc, argv);
-  // The shared sequences' quality; OpenCV's default of 23 blurs the finest vessels.
-  setenv("OPENCV_FFMPEG_WRITER_OPTIONS", "crf;18", 0);
   try {
     render(arguments);
   } catch (const std::invalid_argument& error) {

@@ -22,7 +22,11 @@ Condition paper()
   result.motion.drift_px = 60.0;
   result.motion.rotation_deg = 4.0;
   result.tissue.um_per_px = 5.6;
-  result.tissue.screen = 0.03;
+  result.tissue.screen = 0.045;
+  result.tissue.contrast = 0.95;
+  result.microscope.optics.defocus_px = 0.7;
+  result.microscope.optics.defocus_change_px = 0.1;
+  result.motion.drift_hz = 0.22;
   result.microscope.illumination.rim_radius_px = 0.0;
   result.microscope.illumination.floor = 0.9;
   result.microscope.illumination.gain = 0.92;
@@ -30,7 +34,7 @@ Condition paper()
   result.microscope.blooms.count = 0;
   result.microscope.instrument.present_fraction = 0.1;
   result.microscope.optics.white_green = 1.05;
-  result.microscope.sensor.shot_noise = 0.12;
+  result.microscope.sensor.shot_noise = 0.18;
   return result;
 }
 
@@ -44,17 +48,17 @@ Condition porcine()
   result.tissue.um_per_px = 3.6;
   result.tissue.contrast = 0.5;
   IlluminationOptions& light = result.microscope.illumination;
-  light.gain = 1.25;
+  light.gain = 1.05;
   light.cone_px = 300.0;
-  light.floor = 0.4;
+  light.floor = 0.3;
   light.rim_radius_px = 397.0;
   result.microscope.optics.defocus_px = 1.5;
-  result.microscope.optics.white_green = 0.8;
+  result.microscope.optics.white_green = 0.9;
   result.microscope.instrument.present_fraction = 1.0;
   result.microscope.instrument.narrowest_px = 58.0;
   result.microscope.instrument.widest_px = 72.0;
-  result.microscope.sensor.read_noise = 1.4;
-  result.microscope.sensor.shot_noise = 0.22;
+  result.microscope.sensor.read_noise = 2.7;
+  result.microscope.sensor.shot_noise = 0.32;
   return result;
 }
 

@@ -13,7 +13,7 @@ namespace eyeslam::simulation {
 struct TissueOptions {
   double um_per_px = 5.3;
   double um_per_px_spread = 0.07;
-  double contrast = 1.0;
+  double contrast = 0.88;
   bool textured = true;
   double screen = 0.0;
 
@@ -36,8 +36,10 @@ struct Condition {
   TissueOptions tissue;
   EyeMotionOptions motion;
   MicroscopeOptions microscope;
-  double motion_factor = 1.0;  ///< multiplies the motion's lengths: the same eye at a higher magnification
-  int width = 800;             ///< usual size
+  double motion_factor = 1.0;      ///< multiplies the motion's lengths: the same eye at a higher magnification
+  double jump_shortest_px = 60.0;  ///< by which the eye jumps while the light is out, px of a view 800 px wide
+  double jump_longest_px = 160.0;
+  int width = 800;  ///< usual size
   int height = 608;
 };
 

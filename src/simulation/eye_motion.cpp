@@ -13,6 +13,7 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kBreath_hz = 0.25;
 constexpr double kPulse_hz = 1.1;
+constexpr double kJump_s = 0.045;
 
 double radians(double deg) { return deg * kPi / 180.0; }
 
@@ -26,7 +27,7 @@ double smoothStep(double t)
 EyeMotionOptions jerky()
 {
   EyeMotionOptions options;
-  options.drift_px = 45.0;
+  options.drift_px = 60.0;
   options.rotation_deg = 2.5;
   options.jerk_interval_s = 1.5;
   return options;
@@ -149,6 +150,11 @@ void EyeMotion::planJerks(double duration_s, Random& random)
     y += dy;
     t += options_.jerk_interval_s * random.uniform(0.6, 1.4);
   }
+}
+
+void EyeMotion::addJump(double t_s, double length_px, double angle)
+{
+  jerks_.push_back({t_s, kJump_s, length_px * std::cos(angle), length_px * std::sin(angle), 0.0});
 }
 
 retina::Pose2 EyeMotion::raw(double t) const

@@ -82,6 +82,8 @@ class EyeMotion {
   EyeMotion(const EyeMotionOptions& options, double px_scale, double duration_s, std::uint64_t seed);
 
   retina::Pose2 at(double t_s) const;
+  /// Adds a jump of `length_px` towards `angle` (rad) at an instant after the start.
+  void addJump(double t_s, double length_px, double angle);
   /// Six coefficients (x^2, xy, y^2 of the map's x, then of its y; 1/px) of the warp that is added to the pose.
   std::array<double, 6> warpAt(double t_s) const;
 

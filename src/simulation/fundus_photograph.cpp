@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "eyeslam/simulation/fundus_photograph.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <vector>
@@ -47,17 +49,34 @@ cv::Mat_<std::uint8_t> fieldOfView(const cv::Mat& bgr, const FundusPhotographOpt
   return cv::Mat_<std::uint8_t>(distance(cv::Rect({1, 1}, field.size())) > options.margin_um / options.um_per_px);
 }
 
-// A centre has no longer distance on either side of at least one line through it, and a shorter one on one of them.
-bool isCentre(const cv::Mat_<float>& distance, int x, int y)
+// Every pixel of the disc around (x, y) that is in a vessel has at least its calibre.
+void inscribeDisc(const cv::Mat_<std::uint8_t>& vessels, cv::Point centre, float radius, cv::Mat_<float>& calibre)
 {
-  constexpr std::array<std::array<int, 2>, 4> kDirections = {{{1, 0}, {1, 1}, {0, 1}, {-1, 1}}};
-  const float here = distance(y, x);
-  for (const auto& [dx, dy] : kDirections) {
-    const float before = distance(y - dy, x - dx);
-    const float after = distance(y + dy, x + dx);
-    if (here >= before && here >= after && 2.0F * here - before - after > 0.7F) return true;
+  const int reach = static_cast<int>(radius);
+  // A line one pixel wide has distance 1 at its centre: half a pixel belongs to either side.
+  const float width = 2.0F * radius - 1.0F;
+  for (int dy = -reach; dy <= reach; ++dy) {
+    for (int dx = -reach; dx <= reach; ++dx) {
+      if (static_cast<float>(dx * dx + dy * dy) > radius * radius) continue;
+      const cv::Point place = centre + cv::Point(dx, dy);
+      if (!place.inside({{0, 0}, vessels.size()}) || !vessels(place)) continue;
+      calibre(place) = std::max(calibre(place), width);
+    }
   }
-  return false;
+}
+
+// Discs beside the centreline lie within a neighbour's: a step of one pixel gains one pixel of distance there.
+bool mayBeCentre(const cv::Mat_<float>& distance, int x, int y)
+{
+  constexpr float kSlope = 0.93F;
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      const cv::Point place(x + dx, y + dy);
+      if ((dx == 0 && dy == 0) || !place.inside({{0, 0}, distance.size()})) continue;
+      if (distance(place) - distance(y, x) > kSlope * static_cast<float>(std::hypot(dx, dy))) return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -65,29 +84,11 @@ bool isCentre(const cv::Mat_<float>& distance, int x, int y)
 cv::Mat_<float> calibreOfMask(const cv::Mat_<std::uint8_t>& vessels)
 {
   cv::Mat_<float> calibre(vessels.size(), 0.0F);
-  if (cv::countNonZero(vessels) == 0) return calibre;
   cv::Mat_<float> distance;
   cv::distanceTransform(vessels, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-  cv::Mat_<std::uint8_t> off_centre(vessels.size(), std::uint8_t{255});
-  for (int y = 1; y + 1 < vessels.rows; ++y) {
-    for (int x = 1; x + 1 < vessels.cols; ++x) {
-      if (vessels(y, x) && isCentre(distance, x, y)) off_centre(y, x) = 0;
-    }
-  }
-  if (cv::countNonZero(off_centre) == static_cast<int>(off_centre.total())) return calibre;
-  cv::Mat to_centre;
-  cv::Mat_<int> nearest;
-  cv::distanceTransform(off_centre, to_centre, nearest, cv::DIST_L2, cv::DIST_MASK_5, cv::DIST_LABEL_PIXEL);
-  std::vector<float> radius(vessels.total() + 1, 0.0F);
   for (int y = 0; y < vessels.rows; ++y) {
     for (int x = 0; x < vessels.cols; ++x) {
-      if (!off_centre(y, x)) radius[static_cast<std::size_t>(nearest(y, x))] = distance(y, x);
-    }
-  }
-  // A line one pixel wide has distance 1 at its centre: half a pixel belongs to either side.
-  for (int y = 0; y < vessels.rows; ++y) {
-    for (int x = 0; x < vessels.cols; ++x) {
-      if (vessels(y, x)) calibre(y, x) = 2.0F * radius[static_cast<std::size_t>(nearest(y, x))] - 1.0F;
+      if (vessels(y, x) && mayBeCentre(distance, x, y)) inscribeDisc(vessels, {x, y}, distance(y, x), calibre);
     }
   }
   return calibre;

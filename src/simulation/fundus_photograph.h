@@ -34,7 +34,8 @@ struct FundusPhotographOptions {
 /// @throws std::invalid_argument when types or sizes do not fit, or all is dark
 Fundus fundusFromPhotograph(const cv::Mat& bgr, const cv::Mat& vessels, const FundusPhotographOptions& options = {});
 
-/// The calibre of every vessel pixel of a mask: twice the distance from the nearest centreline pixel to the background.
+/// The local calibre of every vessel pixel of a mask, px: the width of the widest disc within the mask that holds it
+/// (local thickness; Hildebrand and Ruegsegger 1997).
 /// @param vessels  8 bit, 1 channel, not 0 = vessel
 cv::Mat_<float> calibreOfMask(const cv::Mat_<std::uint8_t>& vessels);
 

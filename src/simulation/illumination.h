@@ -12,12 +12,12 @@ namespace eyeslam::simulation {
 
 /// Light and field of view. Lengths in frame px of a view 800 px wide.
 struct IlluminationOptions {
-  double gain = 0.8;
-  double cone_px = 420.0;
-  double floor = 0.55;
+  double gain = 0.88;
+  double cone_px = 330.0;
+  double floor = 0.5;
   double wander_px = 60.0;
   double rim_radius_px = 440.0;
-  double rim_softness_px = 26.0;
+  double rim_softness_px = 37.0;
   double rim_offset_px = 14.0;
   int blackouts = 0;
   double blackout_shortest_s = 0.5;
@@ -46,6 +46,10 @@ struct IlluminationOptions {
 /// What the light does to a view of fixed size.
 class Illumination {
  public:
+  struct Interval {
+    double from_s, to_s;
+  };
+
   Illumination(const IlluminationOptions& options, cv::Size view, double px_scale, double duration_s,
                std::uint64_t seed);
 
@@ -55,16 +59,14 @@ class Illumination {
   const cv::Mat_<float>& field() const { return field_; }
   /// 0 while the light is out, 1 while it is on.
   double switchedOn(double t_s) const;
+  /// When the light is out, in order.
+  const std::vector<Interval>& darkIntervals() const { return dark_; }
   bool hasRim() const { return rim_radius_ > 0.0; }
   cv::Point2d rimCentre() const { return rim_centre_; }
   /// Where the field has fallen to half, px.
   double rimRadius() const { return rim_radius_; }
 
  private:
-  struct Interval {
-    double from_s, to_s;
-  };
-
   void drawField(double softness_px);
   void planBlackouts(double duration_s, Random& random);
 

@@ -16,7 +16,7 @@ namespace eyeslam::simulation {
 
 struct OpticsOptions {
   double exposure_ms = 15.0;
-  double defocus_px = 0.9;
+  double defocus_px = 1.0;
   double defocus_change_px = 0.3;
   double veil = 0.0;
   double white_red = 1.0;

@@ -11,8 +11,8 @@
 namespace eyeslam::simulation {
 
 struct SensorOptions {
-  double read_noise = 0.8;
-  double shot_noise = 0.15;
+  double read_noise = 1.3;
+  double shot_noise = 0.19;
   double black = 2.0;
 
   template <class Self, class Visitor>

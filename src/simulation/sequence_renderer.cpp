@@ -15,18 +15,13 @@ namespace {
 constexpr double kUsualWidth_px = 800.0;
 constexpr double kTwoPi = 6.28318530717958647693;
 
-// Dots of three inks in rows at their usual angles; the finest a magnified print shows.
+// Dots in a square grid: the finest that a magnified print shows (rendered sequences: 4.83 px).
 void printScreen(cv::Mat_<cv::Vec3f>& bgr, double strength)
 {
-  constexpr double kPeriod_px = 3.7;
-  constexpr std::array<double, 3> kAngles = {0.0, 1.309, 0.262};
+  constexpr double kStep = kTwoPi / 4.83;
   for (int y = 0; y < bgr.rows; ++y) {
     for (int x = 0; x < bgr.cols; ++x) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        const double u = (x * std::cos(kAngles[c]) + y * std::sin(kAngles[c])) * kTwoPi / kPeriod_px;
-        const double v = (y * std::cos(kAngles[c]) - x * std::sin(kAngles[c])) * kTwoPi / kPeriod_px;
-        bgr(y, x)[static_cast<int>(c)] *= static_cast<float>(1.0 + strength * 0.5 * (std::sin(u) + std::sin(v)));
-      }
+      bgr(y, x) *= static_cast<float>(1.0 + strength * std::sin(kStep * x) * std::sin(kStep * y));
     }
   }
 }
@@ -55,6 +50,20 @@ Fundus prepared(const Fundus& fundus, const TissueOptions& tissue, double zoom)
   return result;
 }
 
+// Nobody sees the eye's largest jumps of a video whose light goes out.
+void jumpInTheDark(EyeMotion& motion, const Condition& condition, const SequenceOptions& options)
+{
+  const double px_scale = options.size.width / kUsualWidth_px;
+  const Illumination light(condition.microscope.illumination, options.size, px_scale, options.frames / options.fps,
+                           options.seed);
+  Random random(options.seed, 19);
+  for (const Illumination::Interval& dark : light.darkIntervals()) {
+    const double middle = 0.5 * (dark.from_s + dark.to_s);
+    const double length = px_scale * random.uniform(condition.jump_shortest_px, condition.jump_longest_px);
+    motion.addJump(middle, length, random.uniform(0.0, kTwoPi));
+  }
+}
+
 }  // namespace
 
 struct SequenceRenderer::Scene {
@@ -70,6 +79,7 @@ struct SequenceRenderer::Scene {
     const double zoom = fundus.um_per_px / um;
     const double px_scale = options.size.width / kUsualWidth_px;
     EyeMotion motion(condition.motion, px_scale * condition.motion_factor, options.frames / options.fps, options.seed);
+    jumpInTheDark(motion, condition, options);
     const Fundus retina = prepared(fundus, condition.tissue, zoom);
     const double rim = condition.microscope.illumination.rim_radius_px * px_scale;
     const ViewPlan view = planView(retina, motion, {options.size, options.fps, options.frames, rim, options.seed});

@@ -11,7 +11,7 @@ namespace eyeslam::simulation {
 namespace {
 
 constexpr double kTwoPi = 6.28318530717958647693;
-constexpr double kGlowReach = 3.6;  // of the core's radius; beyond it the glow is below a grey level
+constexpr double kGlowReach = 4.5;  // of the core's radius; beyond it the glow is below a grey level
 
 double fading(double t, double from_s, double to_s)
 {
@@ -61,8 +61,8 @@ void addGlow(cv::Mat& picture, cv::Point2d centre, double radius, const cv::Scal
   for (int y = area.y; y < area.y + area.height; ++y) {
     for (int x = area.x; x < area.x + area.width; ++x) {
       const double square = ((x - centre.x) * (x - centre.x) + (y - centre.y) * (y - centre.y)) / (radius * radius);
-      // A saturated core (4 white at its middle falls to white at its radius) and a faint glow.
-      const double light = 4.0 * std::exp(-1.5 * square) + 0.25 * std::exp(-0.45 * square);
+      // Fitted to the rendered sequences: a glow that alone nearly saturates, and a core within it.
+      const double light = 1.03 * std::exp(-0.28 * square) + 0.8 * std::exp(-1.4 * square);
       auto& pixel = picture.at<cv::Vec4f>(y, x);
       for (int c = 0; c < 3; ++c) pixel[c] += static_cast<float>(light * colour[c]);
     }
