@@ -89,7 +89,7 @@ void ScanMatcher::Steps::reserve(const cv::Size& frame, double cell_px)
   const int diameter = static_cast<int>(1.2 * std::hypot(frame.width, frame.height) / cell_px) + 2;
   points_.reserve(kPoints, 2 * steps + 1);
   tables_.reserve({diameter + 2 * half, diameter + 2 * half});
-  blocks_.reserve((2 * steps + 1) * (half / 4 + 2) * (half / 4 + 2), kPoints);
+  blocks_.reserve((2 * steps + 1) * (half / 4 + 2) * (half / 4 + 34), kPoints);
   surface_.reserve(kMostSurface, kPoints);
   rivals_.reserve(kMostSurface);
 }
