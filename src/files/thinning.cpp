@@ -51,6 +51,18 @@ bool removeOnce(cv::Mat_<std::uint8_t>& picture, std::vector<cv::Point>& alive, 
   return !removed.empty();
 }
 
+// Of a staircase only the diagonal steps are needed: a corner between two neighbours that touch each other goes.
+void removeCorners(cv::Mat_<std::uint8_t>& picture, const std::vector<cv::Point>& alive)
+{
+  for (const cv::Point at : alive) {
+    const unsigned code = neighbours(picture, at);
+    const auto p = [code](unsigned i) { return (code >> (i % 8)) & 1U; };
+    for (unsigned i = 0; i < 8; i += 2) {
+      if (p(i) && p(i + 2) && !p(i + 4) && !p(i + 5) && !p(i + 6)) picture(at) = 0;
+    }
+  }
+}
+
 }  // namespace
 
 cv::Mat_<std::uint8_t> thinned(const cv::Mat_<std::uint8_t>& regions)
@@ -69,6 +81,7 @@ cv::Mat_<std::uint8_t> thinned(const cv::Mat_<std::uint8_t>& regions)
     changed = removeOnce(padded, alive, rules.first);
     changed = removeOnce(padded, alive, rules.second) || changed;
   }
+  removeCorners(padded, alive);
   return padded(cv::Rect(1, 1, regions.cols, regions.rows)).clone();
 }
 
