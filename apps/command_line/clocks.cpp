@@ -18,4 +18,11 @@ double seconds(clockid_t clock)
 double monotonicSeconds() { return seconds(CLOCK_MONOTONIC); }
 double threadCpuMilliseconds() { return 1e3 * seconds(CLOCK_THREAD_CPUTIME_ID); }
 
+std::int64_t utimeNow()
+{
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  return static_cast<std::int64_t>(now.tv_sec) * 1000000 + now.tv_nsec / 1000;
+}
+
 }  // namespace eyeslam::apps

@@ -10,6 +10,8 @@ namespace eyeslam::apps {
 class FrameObserver {
  public:
   virtual ~FrameObserver() = default;
+  /// As soon as a frame was read, before it is tracked.
+  virtual void onRead(const files::VideoFrame&) {}
   /// @param result  of this frame; its pose speaks full-resolution px
   virtual void onFrame(const files::VideoFrame& frame, const tracking::TrackResult& result,
                        baselines::Method& method) = 0;
