@@ -13,7 +13,7 @@ using namespace eyeslam::apps;
 
 void dump(const TrackArguments& arguments)
 {
-  const auto options = trackerOptions(arguments);
+  const auto options = configurationOf(arguments);
   fmt::print("{}", arguments.dump == "markdown" ? eyeslam::configuration::markdownOf(options)
                                                 : eyeslam::configuration::yamlOf(options));
 }

@@ -21,17 +21,40 @@ const char* const kExamples =
     "  eyeslam-track camera:0 --out results --display --record camera.mkv\n"
     "  eyeslam-track --dump-config > my.yaml && eyeslam-track surgery.mp4 --out results --config my.yaml\n";
 
+// CLI11's own ranges let NaN pass, and show themselves in the help text.
+CLI::Validator within(double lowest, double highest)
+{
+  return CLI::Validator(
+      [lowest, highest](const std::string& text) {
+        double value = 0.0;
+        const bool good = CLI::detail::lexical_cast(text, value) && value >= lowest && value <= highest;
+        return good ? std::string() : fmt::format("{} is no number in [{}, {}]", text, lowest, highest);
+      },
+      "");
+}
+
+CLI::Validator frameNumber()
+{
+  return CLI::Validator(
+      [](const std::string& text) {
+        std::int64_t value = -1;
+        const bool good = CLI::detail::lexical_cast(text, value) && value >= 0;
+        return good ? std::string() : text + " is no frame number (0, 1, ...)";
+      },
+      "");
+}
+
 void addInputs(CLI::App& app, TrackArguments& a)
 {
   app.add_option("INPUT", a.input, "Video file, image folder, glob of images, or camera:N");
   app.add_option("--out", a.out, "Folder for the results")->type_name("DIR");
-  app.add_option("--from", a.from, "First frame, from 0")->type_name("FRAME")->check(CLI::NonNegativeNumber);
-  app.add_option("--to", a.to, "Last frame")->type_name("FRAME")->check(CLI::NonNegativeNumber);
-  app.add_option("--fps", a.fps, "Frames per second of images")->type_name("F")->check(CLI::Range(0.001, 100000.0));
+  app.add_option("--from", a.from, "First frame, from 0")->type_name("FRAME")->check(frameNumber());
+  app.add_option("--to", a.to, "Last frame")->type_name("FRAME")->check(frameNumber());
+  app.add_option("--fps", a.fps, "Frames per second of images")->type_name("F")->check(within(0.001, 100000.0));
   app.add_option("--um-per-px", a.um_per_px,
                  "Size of a pixel of the first frame; default: that of meta.json beside INPUT")
       ->type_name("UM")
-      ->check(CLI::Range(1e-6, 1e6));
+      ->check(within(1e-6, 1e6));
   app.add_option("--truth", a.truth, "Folder of a sequence with truth: adds pictures of error and coverage")
       ->type_name("DIR");
 }
@@ -55,8 +78,10 @@ void addOutputs(CLI::App& app, TrackArguments& a)
   app.add_option("--snapshots", a.snapshots, "Also keep the map as it is after these frames")
       ->type_name("F,F,...")
       ->delimiter(',')
-      ->check(CLI::NonNegativeNumber);
+      ->check(frameNumber());
   app.add_option("--record", a.record, "Write each processed frame into a lossless video")->type_name("FILE.mkv");
+  app.add_option("--lcm", a.lcm, "Publish poses, map and tip over LCM; '' = LCM_DEFAULT_URL")->type_name("URL");
+  app.add_option("--key", a.key, "Key that signs the messages: 64 hexadecimal digits")->type_name("FILE");
   app.add_flag("--no-overlay", a.no_overlay, "Write no overlay.mp4");
   app.add_flag("--display", a.display, "Show frames and vessels in a window");
   app.add_flag("--quiet", a.quiet, "Print nothing but errors");
@@ -84,19 +109,23 @@ void check(const TrackArguments& arguments)
   if (arguments.to >= 0 && arguments.to < arguments.from) {
     throw UsageError(fmt::format("--to {} is before --from {}", arguments.to, arguments.from));
   }
+  if (!arguments.key.empty() && !arguments.lcm) throw UsageError("--key FILE needs --lcm URL");
+  if (!arguments.truth.empty() && arguments.from > 0) {
+    throw UsageError(fmt::format("--from {}: --truth needs frame 0, in which the truth's map lies", arguments.from));
+  }
   if (!arguments.record.empty() && std::filesystem::path(arguments.record).extension() != ".mkv") {
     throw UsageError(fmt::format("--record {}: a name that ends in .mkv is wanted", arguments.record));
   }
 }
 
-tracking::TrackerOptions trackerOptions(const TrackArguments& arguments)
+TrackConfiguration configurationOf(const TrackArguments& arguments)
 {
   std::vector<configuration::Assignment> assignments;
   if (!arguments.config.empty()) assignments = configuration::readYaml(arguments.config);
   for (const std::string& setting : arguments.settings) assignments.push_back(configuration::parseSetting(setting));
   if (arguments.scale) assignments.push_back({"frame.scale", *arguments.scale, "--scale"});
   if (arguments.seed) assignments.push_back({"selector.seed", *arguments.seed, "--seed"});
-  return configuration::applied(tracking::TrackerOptions{}, assignments);
+  return configuration::applied(TrackConfiguration{}, assignments);
 }
 
 }  // namespace eyeslam::apps

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "eyeslam/tracking/tracker_options.h"
+#include "track/track_configuration.h"
 
 namespace eyeslam::apps {
 
@@ -24,10 +24,12 @@ struct TrackArguments {
   std::int64_t to = -1;  ///< last frame, -1 = all
   std::vector<std::int64_t> snapshots;
   std::optional<double> um_per_px;
-  double fps = 30.0;   ///< of images
-  std::string record;  ///< lossless video of the processed frames, or empty
-  std::string truth;   ///< folder with a sequence's truth, or empty
-  std::string dump;    ///< "yaml", "markdown", or empty
+  double fps = 30.0;               ///< of images
+  std::string record;              ///< lossless video of the processed frames, or empty
+  std::string truth;               ///< folder with a sequence's truth, or empty
+  std::optional<std::string> lcm;  ///< URL of LCM; empty = LCM_DEFAULT_URL
+  std::string key;                 ///< file with the key that signs messages, or empty
+  std::string dump;                ///< "yaml", "markdown", or empty
   bool no_overlay = false;
   bool display = false;
   bool quiet = false;
@@ -39,8 +41,8 @@ void addOptions(CLI::App& app, TrackArguments& arguments);
 /// @throws UsageError naming the first option that makes no sense with the others
 void check(const TrackArguments& arguments);
 
-/// The tracker's options: defaults, then `--config`, then `--set`, then `--scale` and `--seed`.
+/// All options: defaults, then `--config`, then `--set`, then `--scale` and `--seed`.
 /// @throws ConfigurationError
-tracking::TrackerOptions trackerOptions(const TrackArguments& arguments);
+TrackConfiguration configurationOf(const TrackArguments& arguments);
 
 }  // namespace eyeslam::apps

@@ -12,15 +12,20 @@
 #include "eyeslam/configuration/listing.h"
 #include "eyeslam/files/map_files.h"
 #include "eyeslam/files/whole_file.h"
+#include "track/message_publisher.h"
+#include "track/overlay_writer.h"
 #include "track/recorder.h"
+#include "track/track_window.h"
+#include "track/truth_report.h"
 
 namespace eyeslam::apps {
 namespace {
 
 constexpr std::int64_t kSpaceCheckPeriod = 64;  // frames
 
-const std::vector<std::string> kOwnedNames = {"trajectory.csv", "map",         "vessels.csv", "mosaic.png",
-                                              "mosaic.json",    "overlay.mp4", "run.json"};
+const std::vector<std::string> kOwnedNames = {"trajectory.csv", "map",           "vessels.csv",
+                                              "mosaic.png",     "mosaic.json",   "overlay.mp4",
+                                              "truth_pose.png", "truth_map.png", "run.json"};
 
 files::VideoSourceOptions sourceOptions(const TrackArguments& arguments)
 {
@@ -46,10 +51,10 @@ Verbosity verbosity(const TrackArguments& arguments) { return arguments.quiet ? 
 
 TrackRun::TrackRun(const TrackArguments& arguments)
     : arguments_(arguments),
-      options_(trackerOptions(arguments)),
+      options_(configurationOf(arguments)),
       source_(files::openVideoSource(arguments.input, sourceOptions(arguments))),
       pixel_size_(files::pixelSizeOf(arguments.input, arguments.um_per_px)),
-      method_(baselines::makeMethod(arguments.method, options_)),
+      method_(baselines::makeMethod(arguments.method, options_.tracker)),
       folder_(arguments.out, kOwnedNames),
       trajectory_(folder_.staged("trajectory.csv"), folder_.final("trajectory.csv")),
       snapshots_(arguments.snapshots.begin(), arguments.snapshots.end())
@@ -60,7 +65,28 @@ TrackRun::TrackRun(const TrackArguments& arguments)
 void TrackRun::addObservers()
 {
   const double rate = source_->framesPerSecond();
+  if (arguments_.lcm) addMessages();
   if (!arguments_.record.empty()) observers_.push_back(std::make_unique<Recorder>(arguments_.record, rate));
+  if (!arguments_.truth.empty()) observers_.push_back(std::make_unique<TruthReport>(arguments_.truth, folder_));
+  if (arguments_.display) observers_.push_back(std::make_unique<TrackWindow>());
+  if (!arguments_.no_overlay) addOverlay(rate);
+}
+
+void TrackRun::addMessages()
+{
+  observers_.push_back(
+      std::make_unique<MessagePublisher>(*arguments_.lcm, arguments_.key, pixel_size_.um_per_px.value_or(0.0),
+                                         configuration::yamlOf(options_), configuration::hashOf(options_)));
+  if (!arguments_.quiet && arguments_.key.empty()) {
+    fmt::print(stderr, "eyeslam-track: no --key FILE: messages are unsigned and stay on this computer\n");
+  }
+}
+
+void TrackRun::addOverlay(double frames_per_second)
+{
+  const char* const kName = "overlay.mp4";
+  observers_.push_back(std::make_unique<OverlayWriter>(folder_.staged(kName), folder_.final(kName), frames_per_second,
+                                                       options_.overlay));
 }
 
 void TrackRun::run()
@@ -95,6 +121,7 @@ void TrackRun::trackFrames()
 
 void TrackRun::trackFrame(const files::VideoFrame& frame)
 {
+  for (const auto& observer : observers_) observer->onRead(frame);
   const double start = threadCpuMilliseconds();
   const tracking::TrackResult& result = method_->track(frame.image);
   const double localized = threadCpuMilliseconds();
@@ -121,7 +148,7 @@ void TrackRun::finishMaps()
 
 void TrackRun::writeRecord(double wall_s) const
 {
-  tracking::TrackerOptions options = options_;
+  TrackConfiguration options = options_;
   const auto fields = configuration::fieldsOf(options);
   const auto paths = source_->paths();
   nlohmann::ordered_json record;

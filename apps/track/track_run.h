@@ -29,6 +29,8 @@ class TrackRun {
 
  private:
   void addObservers();
+  void addMessages();
+  void addOverlay(double frames_per_second);
   void trackFrames();
   void trackFrame(const files::VideoFrame& frame);
   void finishMaps();
@@ -39,7 +41,7 @@ class TrackRun {
   void sayDone() const;
 
   const TrackArguments& arguments_;
-  const tracking::TrackerOptions options_;
+  const TrackConfiguration options_;
   Interruption interruption_;
   std::unique_ptr<files::VideoSource> source_;
   files::PixelSize pixel_size_;

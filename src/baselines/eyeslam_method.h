@@ -16,6 +16,7 @@ class EyeSlamMethod : public Method {
   void finishMap() override { tracker_.finishMap(); }
   const retina::VesselMap& vesselMap() override { return tracker_.getVesselMap(); }
   Mosaic mosaic() const override;
+  std::vector<cv::Point2f> points() const override { return tracker_.getPoints(); }
   const tracking::EyeSlamTracker* eyeSlam() const override { return &tracker_; }
 
  private:

@@ -44,6 +44,8 @@ class Method {
   /// The published vessel map so far, empty where a method has none; valid until the next call of this object.
   virtual const retina::VesselMap& vesselMap() = 0;
   virtual Mosaic mosaic() const { return {}; }
+  /// The vessel points found in the last frame, full px of the image; none where a method has none.
+  virtual std::vector<cv::Point2f> points() const { return {}; }
   /// The tracker itself where the method is EyeSLAM, else null: pictures show what is inside it.
   virtual const tracking::EyeSlamTracker* eyeSlam() const { return nullptr; }
 };
