@@ -13,7 +13,7 @@
 namespace eyeslam::messaging {
 namespace {
 
-constexpr const char* kRemedy = " (make one with: openssl rand -hex 32 > FILE && chmod 600 FILE)";
+constexpr const char* kRemedy = " (make one with: od -An -tx1 -N32 /dev/urandom > FILE && chmod 600 FILE)";
 
 std::string readAll(const std::string& path)
 {

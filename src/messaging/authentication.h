@@ -16,8 +16,8 @@ using Tag = std::array<std::uint8_t, kTagBytes>;
 /// The secret that all programs of one experiment share.
 using Key = std::array<std::uint8_t, 32>;
 
-/// Reads a key of 64 hexadecimal digits (`openssl rand -hex 32 > FILE && chmod 600 FILE`); white space around is
-/// ignored.
+/// Reads a key of 64 hexadecimal digits (`od -An -tx1 -N32 /dev/urandom > FILE && chmod 600 FILE`); white space around
+/// is ignored.
 /// @throws std::runtime_error  naming the file and the remedy: not readable, readable by other users, not 64 digits
 Key readKey(const std::string& path);
 

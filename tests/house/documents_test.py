@@ -7,7 +7,7 @@ import tree
 
 COMMANDS = re.compile(r"^```sh\n(.*?)^```", re.M | re.S)
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)#\s]+)[^)]*\)")
-ORDINARY = {"cmake", "cd", "python3", "ffmpeg", "openssl", "lcm-logger", "git"}
+ORDINARY = {"cmake", "cd", "python3", "ffmpeg", "lcm-logger", "git", "mkdir", "chmod", "od"}
 
 
 def commands(document):
