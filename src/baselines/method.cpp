@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "eyeslam/baselines/eyeslam_method.h"
+#include "eyeslam/baselines/paper_method.h"
 
 namespace eyeslam::baselines {
 namespace {
@@ -21,6 +22,7 @@ const std::vector<std::pair<std::string, Maker>>& makers()
 {
   static const std::vector<std::pair<std::string, Maker>> kMakers = {
       {"eyeslam", [](const TrackerOptions& options) { return std::make_unique<EyeSlamMethod>(options); }},
+      {"paper", [](const TrackerOptions& options) { return std::make_unique<PaperMethod>(options); }},
   };
   return kMakers;
 }
