@@ -53,7 +53,7 @@ def run(name, method):
     sequence, folder = SHARED / "sequences" / name, OUT / method / name
     subprocess.run([TRACK, sequence / "video.mp4", "--out", folder, "--method", method, "--no-overlay", "--quiet",
                     "--snapshots", ",".join(map(str, SNAPSHOTS))], check=True)
-    judge = ["python3", SHARED / "score.py", sequence, folder / "trajectory.csv", "--json"]
+    judge = ["/usr/bin/python3", SHARED / "score.py", sequence, folder / "trajectory.csv", "--json"]
     if method == "eyeslam":
         judge += ["--map", folder / "map"]
     score = json.loads(subprocess.run(judge, check=True, capture_output=True, text=True).stdout)
