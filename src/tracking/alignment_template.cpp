@@ -10,8 +10,8 @@ constexpr float kBorder_px = 5.0F;  // so that a pixel stays inside while the po
 // Tells which map pixels a frame at a given pose shows.
 class Visibility {
  public:
-  Visibility(const Frame& frame, const OcclusionMask& mask, const retina::Pose2& map_T_frame)
-      : hidden_(mask.cells()),
+  Visibility(const MaskedContrast& frame, const retina::Pose2& map_T_frame)
+      : frame_(frame),
         linear_(map_T_frame.inverse().linear().cast<float>()),
         shift_(map_T_frame.translation().cast<float>()),
         centre_(frame.centre().cast<float>()),
@@ -24,13 +24,11 @@ class Visibility {
   {
     const Eigen::Vector2f p = linear_ * (Eigen::Vector2f(x, y) - shift_) + centre_;
     if (!(p.x() >= kBorder_px && p.y() >= kBorder_px && p.x() <= right_ && p.y() <= bottom_)) return false;
-    const int row = static_cast<int>(p.y() + 0.5F) / Frame::kCell,
-              column = static_cast<int>(p.x() + 0.5F) / Frame::kCell;
-    return hidden_(row, column) == OcclusionMask::kVisible;
+    return frame_.isVisible(static_cast<int>(p.x() + 0.5F), static_cast<int>(p.y() + 0.5F));
   }
 
  private:
-  const cv::Mat_<std::uint8_t>& hidden_;
+  const MaskedContrast& frame_;
   Eigen::Matrix2f linear_;
   Eigen::Vector2f shift_, centre_;
   float right_, bottom_;
@@ -59,12 +57,12 @@ void AlignmentTemplate::push(float px, float py, float pixel_value, float pixel_
   gy.push_back(pixel_gy);
 }
 
-void collectTemplate(const Mosaic& mosaic, const Frame& frame, const OcclusionMask& mask,
-                     const retina::Pose2& map_T_frame, AlignmentTemplate& pixels)
+void collectTemplate(const Mosaic& mosaic, const MaskedContrast& frame, const retina::Pose2& map_T_frame,
+                     AlignmentTemplate& pixels)
 {
   pixels.clear();
-  const Visibility visible(frame, mask, map_T_frame);
-  const cv::Rect box = viewBox({frame.width(), frame.height()}, map_T_frame, mosaic.centre());
+  const Visibility visible(frame, map_T_frame);
+  const cv::Rect box = viewBox(frame.size(), map_T_frame, mosaic.centre());
   const Eigen::Vector2f centre = mosaic.centre().cast<float>();
   for (int ty = floorDivide(box.y, Mosaic::kTile); ty <= floorDivide(box.br().y - 1, Mosaic::kTile); ++ty) {
     for (int tx = floorDivide(box.x, Mosaic::kTile); tx <= floorDivide(box.br().x - 1, Mosaic::kTile); ++tx) {
@@ -80,11 +78,11 @@ void collectTemplate(const Mosaic& mosaic, const Frame& frame, const OcclusionMa
   }
 }
 
-void selectVisible(const AlignmentTemplate& pixels, const Frame& frame, const OcclusionMask& mask,
-                   const retina::Pose2& map_T_frame, AlignmentTemplate& visible_pixels)
+void selectVisible(const AlignmentTemplate& pixels, const MaskedContrast& frame, const retina::Pose2& map_T_frame,
+                   AlignmentTemplate& visible_pixels)
 {
   visible_pixels.clear();
-  const Visibility visible(frame, mask, map_T_frame);
+  const Visibility visible(frame, map_T_frame);
   for (std::size_t c = 0; c < pixels.cluster_begins.size(); ++c) {
     const std::size_t begin = visible_pixels.size();
     for (std::size_t i = pixels.cluster_begins[c]; i < pixels.clusterEnd(c); ++i) {

@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "eyeslam/retina/pose2.h"
-#include "eyeslam/tracking/frame.h"
+#include "eyeslam/tracking/masked_contrast.h"
 #include "eyeslam/tracking/mosaic.h"
-#include "eyeslam/tracking/occlusion_mask.h"
 
 namespace eyeslam::tracking {
 
@@ -31,11 +30,11 @@ struct AlignmentTemplate {
 };
 
 /// Fills `pixels` with the mosaic's template pixels that a frame at this pose sees, unmasked and away from its border.
-void collectTemplate(const Mosaic& mosaic, const Frame& frame, const OcclusionMask& mask,
-                     const retina::Pose2& map_T_frame, AlignmentTemplate& pixels);
+void collectTemplate(const Mosaic& mosaic, const MaskedContrast& frame, const retina::Pose2& map_T_frame,
+                     AlignmentTemplate& pixels);
 
 /// Fills `visible` with those of `pixels` that a frame at this pose sees, unmasked and away from its border.
-void selectVisible(const AlignmentTemplate& pixels, const Frame& frame, const OcclusionMask& mask,
-                   const retina::Pose2& map_T_frame, AlignmentTemplate& visible);
+void selectVisible(const AlignmentTemplate& pixels, const MaskedContrast& frame, const retina::Pose2& map_T_frame,
+                   AlignmentTemplate& visible);
 
 }  // namespace eyeslam::tracking

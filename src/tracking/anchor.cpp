@@ -9,26 +9,49 @@ namespace eyeslam::tracking {
 namespace {
 
 constexpr int kBorder_px = 6;
+constexpr double kFarthest_px = 3.0;
+constexpr double kLeastNcc = 0.4;
 constexpr int kCluster_px = 64;
 constexpr int kBlockWidth = Mosaic::kBlockWidth, kBlockHeight = Mosaic::kBlockHeight;
 constexpr float kLeastGradient = 0.006F * Frame::kContrastUnit;  // per px; source: tracker study 2.14
 
 }  // namespace
 
-Anchor::Anchor(const AnchorOptions& options, const RefinerOptions& refiner) : options_(options), refiner_(refiner)
+Anchor::Anchor(const AnchorOptions& options, const RefinerOptions& refiner, const SmearModelOptions& smear,
+               const DenseSearchOptions& dense)
+    : options_(options), refiner_(refiner), smear_model_(smear, refiner), dense_search_(dense)
 {
   template_.reserve(1 << 14);
 }
 
-void Anchor::start(const Frame& frame, const OcclusionMask& mask)
+void Anchor::start(const MaskedContrast& frame)
 {
-  frame.contrast().copyTo(contrast_);
-  mask.cells().copyTo(hidden_);
+  frame.contrast.copyTo(contrast_);
+  frame.hidden.copyTo(hidden_);
+  sharpness_ = sharpness(frame);
+  smeared_ = false;
   goal_ = now_ = {};
   next_ = options_.first_frame;
   // Touched now, so that the frame of the first registration does not pay for the pages.
   mean_ = cv::Mat_<std::int16_t>::zeros(contrast_.size());
   count_ = cv::Mat_<std::uint8_t>::zeros(contrast_.size());
+}
+
+bool Anchor::isBetterStart(const MaskedContrast& frame, std::int64_t frames_since_start) const
+{
+  return frames_since_start <= options_.settle_frames && sharpness(frame) > options_.sharper * sharpness_;
+}
+
+void Anchor::startAgain(const Mosaic& mosaic, std::int64_t frames_since_start)
+{
+  smeared_ = true;
+  sharpness_ /= options_.sharper;
+  goal_ = now_ = {};
+  const auto rough = dense_search_.find(mosaic, picture(), {});
+  if (!rough) return;  // nothing better is known than that the view stood still
+  motion_ = -rough->translation() / static_cast<double>(std::max<std::int64_t>(1, frames_since_start));
+  const Refinement found = registerSmeared(mosaic, *rough);
+  goal_ = now_ = found.converged && found.ncc > kLeastNcc ? found.map_T_frame : *rough;
 }
 
 void Anchor::update(const Mosaic& mosaic, std::int64_t frames_since_start)
@@ -45,18 +68,27 @@ void Anchor::update(const Mosaic& mosaic, std::int64_t frames_since_start)
 
 void Anchor::restore(Mosaic& mosaic) const
 {
-  if (next_ <= options_.first_frame) mosaic.start(contrast_, hidden_);
+  if (next_ <= options_.first_frame && !smeared_) mosaic.start(picture());
 }
 
 void Anchor::registerStart(const Mosaic& mosaic)
 {
+  const Refinement found = smeared_ ? registerSmeared(mosaic, goal_) : registerSharp(mosaic);
+  const double moved = (found.map_T_frame.translation() - goal_.translation()).norm();
+  // The last registration is nearly right: a result far off is an error of this one.
+  if (found.converged && found.ncc >= kLeastNcc && moved < kFarthest_px) goal_ = found.map_T_frame;
+}
+
+Refinement Anchor::registerSharp(const Mosaic& mosaic)
+{
   collect(mosaic);
-  const Refinement found = refiner_.refine(contrast_, template_, goal_, Freedom::rigid);
-  // Frame 0 made the mosaic: a result far off is an error of this registration.
-  constexpr double kFarthest_px = 3.0;
-  constexpr double kLeastNcc = 0.4;
-  if (!found.converged || found.ncc < kLeastNcc || found.map_T_frame.translation().norm() > kFarthest_px) return;
-  goal_ = found.map_T_frame;
+  return refiner_.refine(contrast_, template_, goal_, Freedom::rigid);
+}
+
+Refinement Anchor::registerSmeared(const Mosaic& mosaic, const retina::Pose2& from)
+{
+  collectTemplate(mosaic, picture(), from, template_);
+  return smear_model_.refine(mosaic, picture(), template_, from, motion_, Freedom::rigid, 1.0);
 }
 
 // The strongest pixel of each block of the mosaic without frame 0's share: M' = (k M - n0) / (k - 1).

@@ -44,7 +44,7 @@ double peak(double before, double here, double after)
 
 DenseSearch::DenseSearch(const DenseSearchOptions& options) : options_(options) {}
 
-void DenseSearch::shrinkFrame(const Frame& frame, const OcclusionMask& mask, const retina::Pose2& around)
+void DenseSearch::shrinkFrame(const MaskedContrast& frame, const retina::Pose2& around)
 {
   // Columns in whole lanes; the cells beyond the view are unknown.
   const int rows = frame.height() / kCell;
@@ -52,17 +52,16 @@ void DenseSearch::shrinkFrame(const Frame& frame, const OcclusionMask& mask, con
   frame_mean_.create(rows, columns);
   frame_known_.create(rows, columns);
   const Eigen::Matrix2d linear = retina::Pose2{0.0, 0.0, around.theta, around.scale}.inverse().linear();
-  const cv::Mat_<std::int16_t>& contrast = frame.contrast();
   for (int j = 0; j < rows; ++j) {
     for (int i = 0; i < columns; ++i) {
       const Eigen::Vector2d p =
           frame.centre() + linear * Eigen::Vector2d((i + 0.5 - 0.5 * columns) * kCell, (j + 0.5 - 0.5 * rows) * kCell);
       const int x = static_cast<int>(std::lround(p.x())), y = static_cast<int>(std::lround(p.y()));
       const bool known = x >= kCell / 2 && y >= kCell / 2 && x + kCell / 2 < frame.width() &&
-                         y + kCell / 2 < frame.height() && mask.isVisible(x, y);
+                         y + kCell / 2 < frame.height() && frame.isVisible(x, y);
       float sum = 0.0F;
       for (int v = y - kCell / 2; known && v < y + kCell / 2; ++v) {
-        for (int u = x - kCell / 2; u < x + kCell / 2; ++u) sum += static_cast<float>(contrast(v, u));
+        for (int u = x - kCell / 2; u < x + kCell / 2; ++u) sum += static_cast<float>(frame.contrast(v, u));
       }
       frame_mean_(j, i) = sum / (kCell * kCell);
       frame_known_(j, i) = known ? 1.0F : 0.0F;
@@ -113,10 +112,10 @@ float DenseSearch::correlate(int dx, int dy) const
   return s[0] >= least && power > 0.0 ? static_cast<float>((s[0] * s[5] - s[1] * s[2]) / std::sqrt(power)) : 0.0F;
 }
 
-std::optional<retina::Pose2> DenseSearch::find(const Mosaic& mosaic, const Frame& frame, const OcclusionMask& mask,
+std::optional<retina::Pose2> DenseSearch::find(const Mosaic& mosaic, const MaskedContrast& frame,
                                                const retina::Pose2& around)
 {
-  shrinkFrame(frame, mask, around);
+  shrinkFrame(frame, around);
   shrinkMosaic(mosaic, around);
   const int reach = options_.reach_cells;
   float best = 0.0F;

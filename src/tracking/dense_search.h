@@ -8,9 +8,8 @@
 
 #include "eyeslam/retina/options.h"
 #include "eyeslam/retina/pose2.h"
-#include "eyeslam/tracking/frame.h"
+#include "eyeslam/tracking/masked_contrast.h"
 #include "eyeslam/tracking/mosaic.h"
-#include "eyeslam/tracking/occlusion_mask.h"
 
 namespace eyeslam::tracking {
 
@@ -36,12 +35,11 @@ class DenseSearch {
 
   /// @param around  where to search; its angle and scale are kept
   /// @return  the shifted pose (within about 2 px), or nothing when no place correlates
-  std::optional<retina::Pose2> find(const Mosaic& mosaic, const Frame& frame, const OcclusionMask& mask,
-                                    const retina::Pose2& around);
+  std::optional<retina::Pose2> find(const Mosaic& mosaic, const MaskedContrast& frame, const retina::Pose2& around);
 
  private:
   static constexpr int kCell = 8;  // px
-  void shrinkFrame(const Frame& frame, const OcclusionMask& mask, const retina::Pose2& around);
+  void shrinkFrame(const MaskedContrast& frame, const retina::Pose2& around);
   void shrinkMosaic(const Mosaic& mosaic, const retina::Pose2& around);
   float correlate(int dx, int dy) const;
 

@@ -3,7 +3,10 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "eyeslam/tracking/detection.h"
 #include "eyeslam/tracking/localizer.h"
+#include "eyeslam/tracking/mosaic_picture.h"
+#include "eyeslam/tracking/track_display.h"
 
 namespace eyeslam::tracking {
 
@@ -12,36 +15,36 @@ using retina::Reason;
 
 class EyeSlamTracker::Steps {
  public:
-  explicit Steps(const TrackerOptions& options)
-      : options_(options),
-        frame_(options.frame),
-        mask_(options.occlusion),
-        detector_(std::make_unique<RidgeDetector>(options.ridge)),
-        selector_(options.selector),
-        localizer_(options),
-        filter_(options.filter),
-        occupancy_(options.occupancy),
-        mosaic_(options.mosaic),
-        anchor_(options.anchor, options.refiner),
-        scale_(options.scale, options.refiner)
-  {}
+  explicit Steps(const TrackerOptions& options);
 
   const TrackResult& track(const cv::Mat& image);
-  const TrackResult& result() const { return result_; }
+  void updateMap();
+  void finishMap();
 
-  cv::Mat colour_;  // a ViSP image as OpenCV has it
-  ToolTip tip_;
-  retina::VesselMap published_;
+  const TrackerOptions& options() const { return options_; }
+  const TrackResult& result() const { return result_; }
+  const ToolTip& tool() const { return tool_result_; }
+  const retina::VesselMap& vesselMap() const { return published_.map(); }
+  std::vector<cv::Point2f> pointsInImage() const;
+  cv::Mat drawMosaic(cv::Point2d& origin) const;
+  double pixelSize() const { return frame_.pixelSize().x(); }
+
+  cv::Mat bgr;  // a ViSP image as the frame wants it
 
  private:
+  bool isDark() const;
   const TrackResult& startMap();
+  const TrackResult& startAgain(const MaskedContrast& picture);
+  void beginAt(const MaskedContrast& picture, const PoseEstimate& mosaic_T_frame);
   const TrackResult& refuse(Reason why);
-  const TrackResult& accept(const PoseEstimate& map_T_frame, const Localization& found);
+  const TrackResult& accept(const PoseEstimate& mosaic_T_frame, double score);
   Pose2 inFullPixels(const Pose2& map_T_frame) const;
+  std::int64_t framesSinceStart() const { return result_.frame - start_frame_; }
 
   TrackerOptions options_;
   Frame frame_;
   OcclusionMask mask_;
+  ToolTipTracker tool_;
   std::unique_ptr<VesselDetector> detector_;
   PointSelector selector_;
   Localizer localizer_;
@@ -50,11 +53,32 @@ class EyeSlamTracker::Steps {
   Mosaic mosaic_;
   Anchor anchor_;
   ScaleEvidence scale_;
-  Pose2 last_pose_;  // of the last localized frame, frame px
+  PublishedMap published_;
+  MosaicPicture picture_;
+
   VesselPoints points_;
   ScanPoints chosen_;
+  Pose2 last_pose_;  // of the last localized frame in the mosaic, frame px
+  std::int64_t start_frame_ = 0;
   TrackResult result_;
+  ToolTip tool_result_;
 };
+
+EyeSlamTracker::Steps::Steps(const TrackerOptions& options)
+    : options_(options),
+      frame_(options.frame),
+      mask_(options.occlusion),
+      tool_(options.tool),
+      detector_(makeDetector(options)),
+      selector_(options.selector),
+      localizer_(options),
+      filter_(options.filter),
+      occupancy_(options.occupancy),
+      mosaic_(options.mosaic),
+      anchor_(options.anchor, options.refiner, options.smear, options.dense),
+      scale_(options.scale, options.refiner),
+      published_(options.published)
+{}
 
 // The paper's Fig. 2: detect, predict, match, smooth, update.
 const TrackResult& EyeSlamTracker::Steps::track(const cv::Mat& image)
@@ -63,60 +87,93 @@ const TrackResult& EyeSlamTracker::Steps::track(const cv::Mat& image)
   const PosePrediction predicted = filter_.predict(1.0);
   if (const Reason why = frame_.assign(image); why != Reason::none) return refuse(why);
   mask_.update(frame_);
-  if (mask_.medianRed() < options_.localizer.least_red || mask_.visibleFraction() < options_.localizer.least_visible) {
-    return refuse(Reason::blackout);
-  }
-  // Detect: Z_t, the vessel points of this frame.
+  if (isDark()) return refuse(Reason::blackout);
   frame_.normalise(mask_);
+  const MaskedContrast picture(frame_, mask_);
+  tool_result_ = tool_.update(frame_, mask_, image);
+  // Detect: Z_t, the vessel points of this frame.
   detector_->detect(frame_, mask_, points_);
   selector_.choose(points_, frame_.centre(), chosen_);
   if (mosaic_.empty()) return startMap();
+  if (anchor_.isBetterStart(picture, framesSinceStart())) return startAgain(picture);
   // Localize: B_t by scan matching around the prediction, refined and verified; then L_t.
   const Freedom freedom = scale_.isMagnified() ? Freedom::similarity : Freedom::rigid;
-  const Localization found =
-      localizer_.localize(frame_, mask_, chosen_, occupancy_, mosaic_, predicted, last_pose_, freedom);
+  const Localization found = localizer_.localize(picture, chosen_, occupancy_, mosaic_, predicted, last_pose_, freedom);
   if (found.reason != Reason::none) return refuse(found.reason);
-  const PoseEstimate map_T_frame = filter_.correct(found.pose);
+  const PoseEstimate mosaic_T_frame = filter_.correct(found.pose);
   // Map: what is seen is added, what is seen missing decays, the rest stays.
-  occupancy_.decay(mask_, {frame_.width(), frame_.height()}, map_T_frame.map_T_frame, result_.frame);
-  occupancy_.add(chosen_, map_T_frame.map_T_frame);
-  mosaic_.blend(frame_, mask_, map_T_frame.map_T_frame, found.sigma, result_.frame);
-  anchor_.update(mosaic_, result_.frame);
-  if (scale_.update(frame_, mask_, mosaic_, map_T_frame.map_T_frame, result_.frame)) anchor_.restore(mosaic_);
-  return accept(map_T_frame, found);
+  const Pose2& pose = mosaic_T_frame.map_T_frame;
+  occupancy_.decay(mask_, picture.size(), pose, result_.frame);
+  occupancy_.add(chosen_, pose);
+  mosaic_.blend(picture, pose, found.sigma, framesSinceStart());
+  anchor_.update(mosaic_, framesSinceStart());
+  if (scale_.update(picture, mosaic_, pose, framesSinceStart())) anchor_.restore(mosaic_);
+  return accept(mosaic_T_frame, found.score);
+}
+
+bool EyeSlamTracker::Steps::isDark() const
+{
+  return mask_.medianRed() < options_.localizer.least_red || mask_.visibleFraction() < options_.localizer.least_visible;
 }
 
 const TrackResult& EyeSlamTracker::Steps::startMap()
 {
   const PoseEstimate origin{{}, 1e-6 * Eigen::Matrix3d::Identity()};
-  filter_.reset(origin);
-  occupancy_.add(chosen_, {});
-  mosaic_.start(frame_.contrast(), mask_.cells());
-  anchor_.start(frame_, mask_);
-  scale_.start(frame_, mosaic_, mask_);
-  Localization found;
-  found.pose = origin;
-  return accept(origin, found);
+  const MaskedContrast picture(frame_, mask_);
+  start_frame_ = result_.frame;
+  localizer_.reserve(picture.size());
+  published_.start(pixelSize());
+  anchor_.start(picture);
+  beginAt(picture, origin);
+  return accept(origin, 0.0);
+}
+
+// Frame 0 was smeared, this one is sharp: the map starts from here, and frame 0 is found in it.
+const TrackResult& EyeSlamTracker::Steps::startAgain(const MaskedContrast& picture)
+{
+  const PoseEstimate origin{{}, 1e-6 * Eigen::Matrix3d::Identity()};
+  occupancy_.clear();
+  beginAt(picture, origin);
+  anchor_.startAgain(mosaic_, framesSinceStart());
+  return accept(origin, 0.0);
+}
+
+void EyeSlamTracker::Steps::beginAt(const MaskedContrast& picture, const PoseEstimate& mosaic_T_frame)
+{
+  filter_.reset(mosaic_T_frame);
+  localizer_.restart();
+  occupancy_.add(chosen_, mosaic_T_frame.map_T_frame);
+  mosaic_.start(picture);
+  scale_.start(picture, mosaic_);
 }
 
 const TrackResult& EyeSlamTracker::Steps::refuse(Reason why)
 {
   filter_.coast();
+  // Time to prepare the search of the whole map, which a lost view will need.
+  if (why == Reason::blackout) {
+    localizer_.prepare(occupancy_);
+    points_.clear();
+    chosen_.clear();
+    tool_result_ = {};
+  }
   result_.tracked = false;
   result_.reason = why;
+  result_.points = static_cast<int>(chosen_.size());
+  result_.score = 0.0;
   return result_;
 }
 
-const TrackResult& EyeSlamTracker::Steps::accept(const PoseEstimate& map_T_frame, const Localization& found)
+const TrackResult& EyeSlamTracker::Steps::accept(const PoseEstimate& mosaic_T_frame, double score)
 {
   const Eigen::Vector3d unit(frame_.pixelSize().x(), frame_.pixelSize().y(), 1.0);
+  last_pose_ = mosaic_T_frame.map_T_frame;
   result_.tracked = true;
   result_.reason = Reason::none;
-  result_.map_T_frame = inFullPixels(anchor_.mosaic_T_start().inverse() * map_T_frame.map_T_frame);
-  last_pose_ = map_T_frame.map_T_frame;
-  result_.covariance = unit.asDiagonal() * map_T_frame.covariance * unit.asDiagonal();
+  result_.map_T_frame = inFullPixels(anchor_.mosaic_T_start().inverse() * last_pose_);
+  result_.covariance = unit.asDiagonal() * mosaic_T_frame.covariance * unit.asDiagonal();
   result_.points = static_cast<int>(chosen_.size());
-  result_.score = found.score;
+  result_.score = score;
   return result_;
 }
 
@@ -130,13 +187,118 @@ Pose2 EyeSlamTracker::Steps::inFullPixels(const Pose2& map_T_frame) const
   return {t.x(), t.y(), map_T_frame.theta, map_T_frame.scale};
 }
 
-EyeSlamTracker::EyeSlamTracker(const TrackerOptions& options) : steps_(std::make_unique<Steps>(options)) {}
+void EyeSlamTracker::Steps::updateMap()
+{
+  if (mosaic_.empty()) return;
+  if (result_.tracked) {
+    published_.observe(mask_, {frame_.width(), frame_.height()}, mosaic_.centre(), last_pose_);
+    picture_.observe(frame_, mask_, mosaic_.centre(), last_pose_);
+    published_.moveTo(anchor_.mosaic_T_start().inverse(), mosaic_.centre());
+  }
+  published_.slice(mosaic_);
+}
+
+void EyeSlamTracker::Steps::finishMap()
+{
+  if (!mosaic_.empty()) published_.finish(mosaic_);
+}
+
+std::vector<cv::Point2f> EyeSlamTracker::Steps::pointsInImage() const
+{
+  std::vector<cv::Point2f> points;
+  points.reserve(points_.size());
+  for (const VesselPoint& point : points_) {
+    const Eigen::Vector2d centred = Eigen::Vector2d(point.x, point.y) - frame_.centre();
+    const Eigen::Vector2d image = frame_.pixelSize().cwiseProduct(centred) + frame_.centreInImage();
+    points.emplace_back(static_cast<float>(image.x()), static_cast<float>(image.y()));
+  }
+  return points;
+}
+
+cv::Mat EyeSlamTracker::Steps::drawMosaic(cv::Point2d& origin) const
+{
+  origin = {0.0, 0.0};
+  if (mosaic_.empty()) return {};
+  cv::Point corner;
+  const cv::Mat picture = picture_.draw(mosaic_, corner);
+  // Moved as a whole with frame 0; the turn of some 0.01 deg is left out.
+  const Eigen::Vector2d at(corner.x, corner.y);
+  const Eigen::Vector2d moved = at + anchor_.mosaic_T_start().inverse().translation();
+  const Eigen::Vector2d full = (frame_.pixelSize().array() * (moved.array() + 0.5) - 0.5).matrix();
+  origin = {full.x(), full.y()};
+  return picture;
+}
+
+EyeSlamTracker::EyeSlamTracker(const TrackerOptions& options) : steps_(std::make_unique<Steps>(options))
+{
+  p.resize(4);
+}
 EyeSlamTracker::~EyeSlamTracker() = default;
-const TrackResult& EyeSlamTracker::track(const cv::Mat& image) { return steps_->track(image); }
+
+const TrackResult& EyeSlamTracker::initTracking(const vpImage<vpRGBa>& I)
+{
+  steps_ = std::make_unique<Steps>(steps_->options());
+  return track(I);
+}
+
+const TrackResult& EyeSlamTracker::initTracking(const vpImage<unsigned char>& I)
+{
+  steps_ = std::make_unique<Steps>(steps_->options());
+  return track(I);
+}
+
+const TrackResult& EyeSlamTracker::initTracking(const cv::Mat& image)
+{
+  steps_ = std::make_unique<Steps>(steps_->options());
+  return track(image);
+}
+
+const TrackResult& EyeSlamTracker::track(const vpImage<vpRGBa>& I)
+{
+  // Shares the pixels for the conversion: OpenCV has no const view of a foreign buffer, and this one is only read.
+  auto* pixels = const_cast<vpRGBa*>(I.bitmap);
+  cv::cvtColor(cv::Mat(static_cast<int>(I.getRows()), static_cast<int>(I.getCols()), CV_8UC4, pixels), steps_->bgr,
+               cv::COLOR_RGBA2BGR);
+  return track(steps_->bgr);
+}
+
+const TrackResult& EyeSlamTracker::track(const vpImage<unsigned char>& I)
+{
+  auto* pixels = const_cast<unsigned char*>(I.bitmap);
+  return track(cv::Mat(static_cast<int>(I.getRows()), static_cast<int>(I.getCols()), CV_8UC1, pixels));
+}
+
+const TrackResult& EyeSlamTracker::track(const cv::Mat& image)
+{
+  const TrackResult& result = steps_->track(image);
+  p[0] = result.map_T_frame.x;
+  p[1] = result.map_T_frame.y;
+  p[2] = result.map_T_frame.theta;
+  p[3] = result.map_T_frame.scale;
+  return result;
+}
+
+void EyeSlamTracker::updateMap() { steps_->updateMap(); }
+void EyeSlamTracker::finishMap() { steps_->finishMap(); }
 const TrackResult& EyeSlamTracker::getResult() const { return steps_->result(); }
-const retina::VesselMap& EyeSlamTracker::getVesselMap() const { return steps_->published_; }
-const ToolTip& EyeSlamTracker::getToolTip() const { return steps_->tip_; }
-void EyeSlamTracker::updateMap() {}
-void EyeSlamTracker::finishMap() {}
+const ToolTip& EyeSlamTracker::getToolTip() const { return steps_->tool(); }
+std::vector<cv::Point2f> EyeSlamTracker::getPoints() const { return steps_->pointsInImage(); }
+const retina::VesselMap& EyeSlamTracker::getVesselMap() const { return steps_->vesselMap(); }
+
+cv::Mat EyeSlamTracker::getMosaic(cv::Point2d& origin, double& px_per_pixel) const
+{
+  px_per_pixel = steps_->pixelSize();
+  return steps_->drawMosaic(origin);
+}
+
+void EyeSlamTracker::display(const vpImage<vpRGBa>& I, const vpColor& color, unsigned int thickness) const
+{
+  displayTrack(I, getVesselMap(), getResult(), getToolTip(), color, thickness);
+}
+
+void EyeSlamTracker::display(const vpImage<unsigned char>& I, const vpColor& color, unsigned int thickness) const
+{
+  displayTrack(I, getVesselMap(), getResult(), getToolTip(), color, thickness);
+}
 
 }  // namespace eyeslam::tracking

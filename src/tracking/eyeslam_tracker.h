@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "eyeslam/retina/vessel_map.h"
 #include "eyeslam/tracking/track_result.h"
@@ -52,10 +53,13 @@ class EyeSlamTracker : public vpTracker {
   const TrackResult& getResult() const;
   const retina::Pose2& getPose() const { return getResult().map_T_frame; }
   const ToolTip& getToolTip() const;
+  /// The vessel points found in the last frame, full px of the image.
+  std::vector<cv::Point2f> getPoints() const;
   /// The published vessel map; full-resolution px, cells of `px_per_cell`.
   const retina::VesselMap& getVesselMap() const;
   /// The retina seen so far in BGR, 8 bit, one pixel a processed pixel; black where never seen.
-  /// @param origin  map coordinates (full px) of the centre of the picture's pixel (0, 0)
+  /// @param origin        set to the map coordinates (full px) of the centre of the picture's pixel (0, 0)
+  /// @param px_per_pixel  set to the full px a picture's pixel
   cv::Mat getMosaic(cv::Point2d& origin, double& px_per_pixel) const;
 
   /// Draws map points and instrument into the window that shows I (ViSP's habit).

@@ -7,8 +7,7 @@
 namespace eyeslam::tracking {
 
 struct Localizer::View {
-  const Frame& frame;
-  const OcclusionMask& mask;
+  const MaskedContrast& frame;
   const ScanPoints& points;
   const OccupancyMap& occupancy;
   const Mosaic& mosaic;
@@ -29,17 +28,26 @@ Localizer::Localizer(const TrackerOptions& options)
   template_.reserve(1 << 14);
 }
 
+void Localizer::reserve(const cv::Size& frame)
+{
+  matcher_.reserve(frame, cell_px_);
+  relocalizer_.reserve(frame);
+  few_.reserve(static_cast<std::size_t>(options_.wide_points));
+}
+
+void Localizer::prepare(const OccupancyMap& occupancy) { relocalizer_.prepare(occupancy); }
+
 void Localizer::restart()
 {
   relocalizer_.restart();
   running_ncc_ = 0.0;
 }
 
-Localization Localizer::localize(const Frame& frame, const OcclusionMask& mask, const ScanPoints& points,
-                                 const OccupancyMap& occupancy, const Mosaic& mosaic, const PosePrediction& predicted,
-                                 const retina::Pose2& last_pose, Freedom freedom)
+Localization Localizer::localize(const MaskedContrast& frame, const ScanPoints& points, const OccupancyMap& occupancy,
+                                 const Mosaic& mosaic, const PosePrediction& predicted, const retina::Pose2& last_pose,
+                                 Freedom freedom)
 {
-  const View view{frame, mask, points, occupancy, mosaic, predicted, last_pose, freedom};
+  const View view{frame, points, occupancy, mosaic, predicted, last_pose, freedom};
   best_ = {};
   best_.reason = retina::Reason::poor_match;
   const bool confirmed = matchNear(view) || matchWide(view) || matchDense(view) || matchAnywhere(view);
@@ -73,7 +81,7 @@ bool Localizer::matchWide(const View& view)
 // Too smeared for points: the dark and bright areas still correlate.
 bool Localizer::matchDense(const View& view)
 {
-  const auto found = dense_search_.find(view.mosaic, view.frame, view.mask, view.predicted.map_T_frame);
+  const auto found = dense_search_.find(view.mosaic, view.frame, view.predicted.map_T_frame);
   return found && confirm(view, *found, 0.0, Trust::surprising);
 }
 
@@ -90,8 +98,8 @@ bool Localizer::matchAnywhere(const View& view)
 // usually do.
 bool Localizer::confirm(const View& view, const retina::Pose2& start, double score, Trust trust)
 {
-  collectTemplate(view.mosaic, view.frame, view.mask, start, template_);
-  Refinement refined = refiner_.refine(view.frame.contrast(), template_, start, view.freedom, options_.scale_sigma);
+  collectTemplate(view.mosaic, view.frame, start, template_);
+  Refinement refined = refiner_.refine(view.frame.contrast, template_, start, view.freedom, options_.scale_sigma);
   const Eigen::Vector2d motion = refined.map_T_frame.translation() - view.last_pose.translation();
   const SmearModelOptions& smear = smear_model_.options();
   if (motion.norm() > smear.least_motion_px && refined.ncc < smear.ncc_share * running_ncc_) {

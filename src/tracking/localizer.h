@@ -5,9 +5,8 @@
 
 #include "eyeslam/tracking/alignment_template.h"
 #include "eyeslam/tracking/dense_search.h"
-#include "eyeslam/tracking/frame.h"
+#include "eyeslam/tracking/masked_contrast.h"
 #include "eyeslam/tracking/mosaic.h"
-#include "eyeslam/tracking/occlusion_mask.h"
 #include "eyeslam/tracking/refiner.h"
 #include "eyeslam/tracking/relocalizer.h"
 #include "eyeslam/tracking/scan_matcher.h"
@@ -32,13 +31,17 @@ class Localizer {
  public:
   explicit Localizer(const TrackerOptions& options);
 
+  /// Takes the memory for frames of this size, once.
+  void reserve(const cv::Size& frame);
+  /// Uses a frame that cannot be localized (a blackout) to prepare the search of the whole map.
+  void prepare(const OccupancyMap& occupancy);
   void restart();
   /// @param points     chosen points of the frame, centred frame px
   /// @param last_pose  of the last frame that was localized: the view has moved since
   /// @param freedom    whether the scale is estimated as well
-  Localization localize(const Frame& frame, const OcclusionMask& mask, const ScanPoints& points,
-                        const OccupancyMap& occupancy, const Mosaic& mosaic, const PosePrediction& predicted,
-                        const retina::Pose2& last_pose, Freedom freedom);
+  Localization localize(const MaskedContrast& frame, const ScanPoints& points, const OccupancyMap& occupancy,
+                        const Mosaic& mosaic, const PosePrediction& predicted, const retina::Pose2& last_pose,
+                        Freedom freedom);
 
  private:
   struct View;  // what all searches of one frame share

@@ -60,45 +60,42 @@ Mosaic::Mosaic(const MosaicOptions& options) : options_(options) {}
 
 void Mosaic::clear() { tiles_.clear(); }
 
-void Mosaic::start(const cv::Mat_<std::int16_t>& contrast, const cv::Mat_<std::uint8_t>& hidden)
+void Mosaic::start(const MaskedContrast& frame)
 {
   clear();
-  centre_ = {(contrast.cols - 1) / 2.0, (contrast.rows - 1) / 2.0};
-  const cv::Rect box = viewBox(contrast.size(), {}, centre_);
-  for (int row = box.y; row < box.br().y; ++row) blendRow(contrast, hidden, {}, row, 0.0F);
+  centre_ = frame.centre();
+  const cv::Rect box = viewBox(frame.size(), {}, centre_);
+  for (int row = box.y; row < box.br().y; ++row) blendRow(frame, {}, row, 0.0F);
   chooseTemplate(box, 1, 0);
 }
 
-void Mosaic::blend(const Frame& frame, const OcclusionMask& mask, const retina::Pose2& map_T_frame, double sigma,
-                   std::int64_t number)
+void Mosaic::blend(const MaskedContrast& frame, const retina::Pose2& map_T_frame, double sigma, std::int64_t number)
 {
   const int period = number < options_.settled_frame ? options_.row_period : options_.settled_row_period;
   const int phase = static_cast<int>(number % period);
   const double limit = std::max(options_.outlier_sigmas * sigma, options_.outlier_contrast * Frame::kContrastUnit);
-  const cv::Rect box = viewBox({frame.width(), frame.height()}, map_T_frame, centre_);
+  const cv::Rect box = viewBox(frame.size(), map_T_frame, centre_);
   const retina::Pose2 frame_T_map = map_T_frame.inverse();
   for (int row = box.y; row < box.br().y; ++row) {
     if (row - floorDivide(row, period) * period == phase) {
-      blendRow(frame.contrast(), mask.cells(), frame_T_map, row, static_cast<float>(limit));
+      blendRow(frame, frame_T_map, row, static_cast<float>(limit));
     }
   }
   chooseTemplate(box, period, phase);
 }
 
-void Mosaic::blendRow(const cv::Mat_<std::int16_t>& contrast, const cv::Mat_<std::uint8_t>& hidden,
-                      const retina::Pose2& frame_T_map, int row, float limit)
+void Mosaic::blendRow(const MaskedContrast& frame, const retina::Pose2& frame_T_map, int row, float limit)
 {
   // Along a mosaic row the position in the frame moves by a constant step.
   const Eigen::Matrix2d linear = frame_T_map.linear();
-  const Eigen::Vector2d start = frame_T_map * Eigen::Vector2d(-centre_.x(), row - centre_.y()) +
-                                Eigen::Vector2d((contrast.cols - 1) / 2.0, (contrast.rows - 1) / 2.0);
+  const Eigen::Vector2d start = frame_T_map * Eigen::Vector2d(-centre_.x(), row - centre_.y()) + frame.centre();
   const Eigen::Vector2d step = linear.col(0);
   double from = -kReach, to = kReach;
   constexpr double kMargin = CubicSampler::kMargin;
-  clip(start.x(), step.x(), kMargin, contrast.cols - 1 - kMargin, from, to);
-  clip(start.y(), step.y(), kMargin, contrast.rows - 1 - kMargin, from, to);
+  clip(start.x(), step.x(), kMargin, frame.width() - 1 - kMargin, from, to);
+  clip(start.y(), step.y(), kMargin, frame.height() - 1 - kMargin, from, to);
 
-  const CubicSampler sample(contrast);
+  const CubicSampler sample(frame.contrast);
   Tile* tile = nullptr;
   int tile_x = 0;
   const int ty = floorDivide(row, kTile);
@@ -106,7 +103,7 @@ void Mosaic::blendRow(const cv::Mat_<std::int16_t>& contrast, const cv::Mat_<std
   for (int i = static_cast<int>(std::ceil(from)); i <= static_cast<int>(std::floor(to)); ++i) {
     const auto x = static_cast<float>(start.x() + i * step.x());
     const auto y = static_cast<float>(start.y() + i * step.y());
-    if (hidden(static_cast<int>(y + 0.5F) / Frame::kCell, static_cast<int>(x + 0.5F) / Frame::kCell)) continue;
+    if (!frame.isVisible(static_cast<int>(x + 0.5F), static_cast<int>(y + 0.5F))) continue;
     const int tx = floorDivide(i, kTile);
     if (!tile || tx != tile_x) {
       tile = &tiles_.at(tx, ty);

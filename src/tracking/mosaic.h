@@ -8,8 +8,7 @@
 
 #include "eyeslam/retina/options.h"
 #include "eyeslam/retina/pose2.h"
-#include "eyeslam/tracking/frame.h"
-#include "eyeslam/tracking/occlusion_mask.h"
+#include "eyeslam/tracking/masked_contrast.h"
 #include "eyeslam/tracking/tile_grid.h"
 
 namespace eyeslam::tracking {
@@ -74,15 +73,12 @@ class Mosaic {
   void clear();
   bool empty() const { return tiles_.empty(); }
   /// Forgets everything and starts with a frame's picture, every row of it.
-  /// @param contrast  Frame::contrast()
-  /// @param hidden    OcclusionMask::cells()
-  void start(const cv::Mat_<std::int16_t>& contrast, const cv::Mat_<std::uint8_t>& hidden);
+  void start(const MaskedContrast& frame);
   /// Blends the rows whose turn it is.
   /// @param map_T_frame  pose, frame px
   /// @param sigma        robust deviation of frame from mosaic, contrast units
   /// @param number       of the frame, chooses the rows
-  void blend(const Frame& frame, const OcclusionMask& mask, const retina::Pose2& map_T_frame, double sigma,
-             std::int64_t number);
+  void blend(const MaskedContrast& frame, const retina::Pose2& map_T_frame, double sigma, std::int64_t number);
 
   /// Image centre of frame 0, mosaic px: pixel (i, j) has centred map px (i, j) - centre().
   const Eigen::Vector2d& centre() const { return centre_; }
@@ -93,8 +89,7 @@ class Mosaic {
   void read(const cv::Rect& region, cv::Mat_<std::int16_t>& mean, cv::Mat_<std::uint8_t>& count) const;
 
  private:
-  void blendRow(const cv::Mat_<std::int16_t>& contrast, const cv::Mat_<std::uint8_t>& hidden,
-                const retina::Pose2& frame_T_map, int row, float limit);
+  void blendRow(const MaskedContrast& frame, const retina::Pose2& frame_T_map, int row, float limit);
   void chooseTemplate(const cv::Rect& box, int period, int phase);
   void chooseInBlockRow(Tile& tile, int tx, int ty, int block_row);
   void gatherStrip(int tx, int ty, int block_row);

@@ -19,22 +19,22 @@ ScaleEvidence::ScaleEvidence(const ScaleEvidenceOptions& options, const RefinerO
   seen_.reserve(1 << 14);
 }
 
-void ScaleEvidence::start(const Frame& frame, const Mosaic& mosaic, const OcclusionMask& mask)
+void ScaleEvidence::start(const MaskedContrast& frame, const Mosaic& mosaic)
 {
-  collectTemplate(mosaic, frame, mask, {}, first_);
+  collectTemplate(mosaic, frame, {}, first_);
   in_a_row_ = 0;
   magnified_ = false;
 }
 
-bool ScaleEvidence::update(const Frame& frame, const OcclusionMask& mask, const Mosaic& mosaic,
-                           const retina::Pose2& map_T_frame, std::int64_t number)
+bool ScaleEvidence::update(const MaskedContrast& frame, const Mosaic& mosaic, const retina::Pose2& map_T_frame,
+                           std::int64_t number)
 {
   if (magnified_ || number % options_.period != 0) return false;
-  selectVisible(first_, frame, mask, map_T_frame, seen_);
+  selectVisible(first_, frame, map_T_frame, seen_);
   if (static_cast<double>(seen_.size()) < kLeastShare * static_cast<double>(first_.size())) {
-    collectTemplate(mosaic, frame, mask, map_T_frame, seen_);
+    collectTemplate(mosaic, frame, map_T_frame, seen_);
   }
-  const Refinement found = refiner_.refine(frame.contrast(), seen_, map_T_frame, Freedom::similarity);
+  const Refinement found = refiner_.refine(frame.contrast, seen_, map_T_frame, Freedom::similarity);
   if (!found.converged || found.ncc < kLeastNcc) return false;
   const double change = found.map_T_frame.scale - 1.0;
   const bool significant = std::abs(change) > options_.least_change &&

@@ -7,9 +7,8 @@
 #include "eyeslam/retina/options.h"
 #include "eyeslam/retina/pose2.h"
 #include "eyeslam/tracking/alignment_template.h"
-#include "eyeslam/tracking/frame.h"
+#include "eyeslam/tracking/masked_contrast.h"
 #include "eyeslam/tracking/mosaic.h"
-#include "eyeslam/tracking/occlusion_mask.h"
 #include "eyeslam/tracking/refiner.h"
 
 namespace eyeslam::tracking {
@@ -42,11 +41,10 @@ class ScaleEvidence {
   ScaleEvidence(const ScaleEvidenceOptions& options, const RefinerOptions& refiner);
 
   /// Keeps frame 0, whose mosaic this is.
-  void start(const Frame& frame, const Mosaic& mosaic, const OcclusionMask& mask);
+  void start(const MaskedContrast& frame, const Mosaic& mosaic);
   /// Looks at a localized frame when its turn has come.
   /// @return whether the view turned out to be magnified just now
-  bool update(const Frame& frame, const OcclusionMask& mask, const Mosaic& mosaic, const retina::Pose2& map_T_frame,
-              std::int64_t number);
+  bool update(const MaskedContrast& frame, const Mosaic& mosaic, const retina::Pose2& map_T_frame, std::int64_t number);
   /// Whether the scale must be estimated; once true it stays.
   bool isMagnified() const { return magnified_; }
 

@@ -67,10 +67,11 @@ void ShaftEdges::measure(const TintSampler& image, const ShaftAxis& rough, doubl
   sections_.clear();
   const double step = std::min(length, kLongest_widths * rough.width) / kSections;
   const double farthest = rough.width + kBeyond_px;
+  const float steel = image.hasColour() ? std::max(kSteel, share_) : share_;  // brightness has one threshold only
   for (int i = 0; i < kSections; ++i) {
     const double along = -(i + 0.5) * step;
     const Eigen::Vector2d from = rough.at(along);
-    if (!image.contains(from) || image(from).excess(kSteel) <= 0.0F) continue;
+    if (!image.contains(from) || image(from).excess(steel) <= 0.0F) continue;
     const double right = edge(image, from, rough.normal(), farthest);
     const double left = edge(image, from, -rough.normal(), farthest);
     if (left < farthest && right < farthest) sections_.push_back({along, (right - left) / 2.0, left + right});

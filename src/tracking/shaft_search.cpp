@@ -17,7 +17,8 @@ constexpr int kNear = 2;  // cells between the region and the outside: the field
 constexpr double kLeastCells = 4.0;
 constexpr double kLeastLength = 3.0;  // cells
 constexpr double kLeastElongation = 1.6;
-constexpr double kEnd = 1.5;  // cells of each end that are asked whether they come in from outside
+constexpr double kLeastElongationGrey = 5.0;  // the shine is a thin line; brightly lit retina is as bright
+constexpr double kEnd = 1.5;                  // cells of each end that are asked whether they come in from outside
 constexpr int kTrims = 4;
 
 struct Levels {
@@ -82,6 +83,7 @@ Eigen::Vector2d place(cv::Point cell) { return {static_cast<double>(cell.x), sta
 std::optional<Shaft> ShaftSearch::find(const Frame& frame, const OcclusionMask& mask)
 {
   classify(frame, mask);
+  least_elongation_ = frame.isGrey() ? kLeastElongationGrey : kLeastElongation;
   members_.clear();
   members_.reserve(kinds_.total());
   std::optional<Shaft> longest;
@@ -165,7 +167,7 @@ std::optional<Shaft> ShaftSearch::fit(Region region)
     }
     reach = 0.75 * extent.width() + 0.5;
   }
-  if (extent.length() < kLeastLength || extent.length() < kLeastElongation * extent.width()) return std::nullopt;
+  if (extent.length() < kLeastLength || extent.length() < least_elongation_ * extent.width()) return std::nullopt;
   bool low = false, high = false;  // which end comes in from outside
   for (std::size_t i = region.first; i < region.last; ++i) {
     const double along = axis.dot(place(members_[i]) - centre);

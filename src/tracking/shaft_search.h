@@ -46,6 +46,7 @@ class ShaftSearch {
 
   double grey_share_;
   double bright_share_;
+  double least_elongation_ = 1.0;
   cv::Mat_<std::uint8_t> kinds_;
   std::vector<cv::Point> members_;
 };

@@ -30,14 +30,14 @@ SmearModel::SmearModel(const SmearModelOptions& options, const RefinerOptions& r
   smeared_.reserve(1 << 14);
 }
 
-Refinement SmearModel::refine(const Mosaic& mosaic, const Frame& frame, const AlignmentTemplate& sharp,
+Refinement SmearModel::refine(const Mosaic& mosaic, const MaskedContrast& frame, const AlignmentTemplate& sharp,
                               const retina::Pose2& start, const Eigen::Vector2d& motion, Freedom freedom,
                               double scale_sigma)
 {
   const double length = motion.norm();
   const Eigen::Vector2d whole = length > kLongest_px ? Eigen::Vector2d(motion * (kLongest_px / length)) : motion;
   const int reach = static_cast<int>(std::ceil(std::min(length, kLongest_px) * 1.2)) + 4;
-  region_ = viewBox({frame.width(), frame.height()}, start, mosaic.centre());
+  region_ = viewBox(frame.size(), start, mosaic.centre());
   region_ = {region_.x - reach, region_.y - reach, region_.width + 2 * reach, region_.height + 2 * reach};
   mosaic_centre_ = mosaic.centre();
   mosaic.read(region_, mean_, count_);
@@ -50,7 +50,7 @@ Refinement SmearModel::refine(const Mosaic& mosaic, const Frame& frame, const Al
     retina::Pose2 from = best.map_T_frame;
     from.x += ahead * share * whole.x();
     from.y += ahead * share * whole.y();
-    const Refinement found = quick_.refine(frame.contrast(), smeared_, from, freedom, scale_sigma);
+    const Refinement found = quick_.refine(frame.contrast, smeared_, from, freedom, scale_sigma);
     // The robust deviation, not the correlation: blooms and burns leave streaks that outvote the vessels.
     if (!found.converged || (best.converged && found.sigma >= best.sigma)) return;
     best = found;
@@ -63,7 +63,7 @@ Refinement SmearModel::refine(const Mosaic& mosaic, const Frame& frame, const Al
   const double centre = best_share;
   for (const double factor : {0.85, 1.15}) attempt(centre * factor, 0.0);
   smear(sharp, best_share * whole, 1, smeared_);
-  const Refinement refined = full_.refine(frame.contrast(), smeared_, best.map_T_frame, freedom, scale_sigma);
+  const Refinement refined = full_.refine(frame.contrast, smeared_, best.map_T_frame, freedom, scale_sigma);
   return refined.converged ? refined : best;
 }
 

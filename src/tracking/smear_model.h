@@ -6,7 +6,7 @@
 
 #include "eyeslam/retina/options.h"
 #include "eyeslam/tracking/alignment_template.h"
-#include "eyeslam/tracking/frame.h"
+#include "eyeslam/tracking/masked_contrast.h"
 #include "eyeslam/tracking/mosaic.h"
 #include "eyeslam/tracking/refiner.h"
 
@@ -38,7 +38,7 @@ class SmearModel {
   /// @param sharp   the template at `start`
   /// @param motion  of the view since the last frame, map px
   /// @return the refinement of the best smeared template
-  Refinement refine(const Mosaic& mosaic, const Frame& frame, const AlignmentTemplate& sharp,
+  Refinement refine(const Mosaic& mosaic, const MaskedContrast& frame, const AlignmentTemplate& sharp,
                     const retina::Pose2& start, const Eigen::Vector2d& motion, Freedom freedom, double scale_sigma);
 
  private:

@@ -26,6 +26,8 @@ class TintSampler {
       : image_(image), gain_(static_cast<float>(255.0 / white)), light_(static_cast<float>(light))
   {}
 
+  bool hasColour() const { return image_.channels() == 3; }
+
   bool contains(const Eigen::Vector2d& at) const
   {
     return at.x() >= 0.0 && at.y() >= 0.0 && at.x() <= image_.cols - 1 && at.y() <= image_.rows - 1;

@@ -74,6 +74,7 @@ std::optional<ToolTipTracker::End> ToolTipTracker::findEnd(const TintSampler& im
 {
   const auto share = static_cast<float>(options_.grey_share);
   const double step = kStride * std::max(1.0, kUnit_widths * axis.width);
+  const float pure = image.hasColour() ? std::max(kPure, share) : share;  // brightness has one threshold only
   const double first = -kBack_widths * axis.width;
   double last = first - step, last_pure = last;
   bool bloom = false;  // between the last pure steel and here
@@ -81,7 +82,7 @@ std::optional<ToolTipTracker::End> ToolTipTracker::findEnd(const TintSampler& im
     if (!image.contains(axis.at(along))) return std::nullopt;  // it ends outside the picture
     const Tint tint = across(image, axis, along);
     if (tint.blue > options_.saturated) bloom = true;
-    if (tint.blue > kPure * tint.red && tint.blue < kPureLevel * options_.saturated) {
+    if (tint.blue > pure * tint.red && tint.blue < kPureLevel * options_.saturated) {
       last_pure = along;
       bloom = false;
     }

@@ -5,6 +5,7 @@
 
 #include "eyeslam/retina/options.h"
 #include "eyeslam/tracking/anchor.h"
+#include "eyeslam/tracking/cross_vessel_smoother.h"
 #include "eyeslam/tracking/dense_search.h"
 #include "eyeslam/tracking/frame.h"
 #include "eyeslam/tracking/mosaic.h"
@@ -12,12 +13,16 @@
 #include "eyeslam/tracking/occupancy_map.h"
 #include "eyeslam/tracking/point_selector.h"
 #include "eyeslam/tracking/pose_filter.h"
+#include "eyeslam/tracking/published_map.h"
 #include "eyeslam/tracking/refiner.h"
 #include "eyeslam/tracking/relocalizer.h"
 #include "eyeslam/tracking/ridge_detector.h"
 #include "eyeslam/tracking/scale_evidence.h"
 #include "eyeslam/tracking/scan_matcher.h"
 #include "eyeslam/tracking/smear_model.h"
+#include "eyeslam/tracking/spurious_detection_filter.h"
+#include "eyeslam/tracking/tool_tip_tracker.h"
+#include "eyeslam/tracking/vessel_tracer.h"
 
 namespace eyeslam::tracking {
 
@@ -60,6 +65,9 @@ struct TrackerOptions {
   FrameOptions frame;
   OcclusionMaskOptions occlusion;
   RidgeDetectorOptions ridge;
+  VesselTracerOptions tracer;
+  CrossVesselSmootherOptions smoother;
+  SpuriousDetectionFilterOptions spurious;
   PointSelectorOptions selector;
   ScanMatcherOptions matcher;
   RelocalizerOptions relocalizer;
@@ -72,6 +80,8 @@ struct TrackerOptions {
   MosaicOptions mosaic;
   AnchorOptions anchor;
   ScaleEvidenceOptions scale;
+  ToolTipOptions tool;
+  PublishedMapOptions published;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor& visitor)
@@ -81,6 +91,9 @@ struct TrackerOptions {
     visitor.group("frame", self.frame);
     visitor.group("occlusion", self.occlusion);
     visitor.group("ridge", self.ridge);
+    visitor.group("tracer", self.tracer);
+    visitor.group("smoother", self.smoother);
+    visitor.group("spurious", self.spurious);
     visitor.group("selector", self.selector);
     visitor.group("matcher", self.matcher);
     visitor.group("relocalizer", self.relocalizer);
@@ -93,6 +106,8 @@ struct TrackerOptions {
     visitor.group("mosaic", self.mosaic);
     visitor.group("anchor", self.anchor);
     visitor.group("scale", self.scale);
+    visitor.group("tool", self.tool);
+    visitor.group("published", self.published);
   }
 };
 
