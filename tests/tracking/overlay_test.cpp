@@ -93,6 +93,30 @@ TEST_F(OverlayPicture, HasEvenSidesForAnyFrameAndPixel)
   }
 }
 
+TEST_F(OverlayPicture, IsAsWideAsItsOptionSays)
+{
+  OverlayOptions options;
+  options.panel_width = 200;
+  overlay = Overlay(options);
+  EXPECT_EQ(draw().cols, 2 * 200 + 4);
+}
+
+TEST_F(OverlayPicture, ForgetsThePathBeyondItsTrail)
+{
+  const auto walk = [this](int trail) {
+    OverlayOptions options;
+    options.trail_frames = trail;
+    overlay = Overlay(options);
+    result.tracked = true;
+    for (const double x : {-200.0, 0.0, 200.0, 200.0, 200.0}) {
+      result.map_T_frame.x = x;
+      draw();
+    }
+    return draw().clone();
+  };
+  EXPECT_GT(cv::norm(walk(100), walk(2), cv::NORM_INF), 50.0);
+}
+
 TEST_F(OverlayPicture, MarksAPointWhereItLies)
 {
   const cv::Mat before = draw().clone();

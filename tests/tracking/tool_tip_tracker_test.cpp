@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -20,6 +21,7 @@
 using eyeslam::tracking::Frame;
 using eyeslam::tracking::OcclusionMask;
 using eyeslam::tracking::ToolTip;
+using eyeslam::tracking::ToolTipOptions;
 using eyeslam::tracking::ToolTipTracker;
 
 namespace {
@@ -98,11 +100,11 @@ class Scene {
   cv::Mat picture_;
 };
 
-ToolTip find(const cv::Mat& picture)
+ToolTip find(const cv::Mat& picture, const ToolTipOptions& options = {})
 {
   Frame frame;
   OcclusionMask mask;
-  ToolTipTracker tracker;
+  ToolTipTracker tracker(options);
   EXPECT_EQ(frame.assign(picture), eyeslam::retina::Reason::none);
   mask.update(frame);
   return tracker.update(frame, mask, picture);
@@ -210,6 +212,51 @@ TEST(ToolTipTracker, ReadsSixteenBitsAlike)
   ASSERT_TRUE(deep_tip.present);
   EXPECT_NEAR(deep_tip.x_px, shallow_tip.x_px, 0.05);
   EXPECT_NEAR(deep_tip.y_px, shallow_tip.y_px, 0.05);
+}
+
+TEST(ToolTipTracker, FindsTheShineInGreyImagesAndOwnsUpToItsOffset)
+{
+  const Instrument tool{{430.0, 310.0}, 12.0, 40.0};
+  cv::Mat grey;
+  cv::cvtColor(Scene().instrument(tool).blurred(), grey, cv::COLOR_BGR2GRAY);
+  const ToolTip tip = find(grey);
+  ASSERT_TRUE(tip.present);
+  EXPECT_LT(turn(tip, 12.0), 1.0);
+  const Eigen::Vector2d error(tip.x_px - tool.tip.x, tip.y_px - tool.tip.y);
+  EXPECT_LT(error.dot(tip.covariance.inverse() * error), 9.0);
+}
+
+TEST(ToolTipTracker, SaysNothingThatIsNotFiniteOfNoise)
+{
+  cv::RNG random(7);
+  for (int i = 0; i < 60; ++i) {
+    const int type = std::array<int, 4>{CV_8UC3, CV_8UC1, CV_16UC3, CV_16UC1}[static_cast<std::size_t>(i % 4)];
+    cv::Mat coarse(random.uniform(2, 24), random.uniform(2, 24), type), picture;
+    random.fill(coarse, cv::RNG::UNIFORM, 0, CV_MAT_DEPTH(type) == CV_8U ? 256 : 65536);
+    cv::resize(coarse, picture, {random.uniform(64, 500), random.uniform(64, 400)}, 0, 0, cv::INTER_NEAREST);
+    const ToolTip tip = find(picture);
+    EXPECT_TRUE(std::isfinite(tip.x_px + tip.y_px + tip.shaft_angle + tip.shaft_width_px + tip.covariance.sum()));
+  }
+}
+
+TEST(ToolTipTracker, OptionsSayWhatIsSteel)
+{
+  const cv::Mat picture = Scene().instrument({{430.0, 310.0}, 12.0, 36.0}).blurred();
+  cv::Mat grey;
+  cv::cvtColor(picture, grey, cv::COLOR_BGR2GRAY);
+  ToolTipOptions options;
+  EXPECT_TRUE(find(picture, options).present);
+  EXPECT_TRUE(find(grey, options).present);
+  options.bright_share = 3.0;
+  EXPECT_FALSE(find(grey, options).present);
+  options.saturated = 130.0;  // the shine counts as a bloom: no end of it is trusted
+  const ToolTip doubtful = find(picture, options);
+  EXPECT_TRUE(!doubtful.present || doubtful.covariance.trace() > find(picture).covariance.trace());
+  cv::Mat reddish = picture.clone();
+  cv::multiply(reddish, cv::Scalar(0.6, 0.8, 1.0), reddish);
+  options = {};
+  options.grey_share = 0.95;
+  EXPECT_FALSE(find(reddish, options).present);
 }
 
 TEST(ToolTipTracker, AllocatesNothingOnceItHasSeenAFrame)
