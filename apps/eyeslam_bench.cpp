@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// eyeslam-bench: this tracker beside the alternatives, as tables (contracts, section 2).
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "bench/detector_study.h"
+#include "bench/method_study.h"
+#include "command_line/program.h"
+#include "command_line/progress.h"
+#include "eyeslam/baselines/method.h"
+
+namespace {
+
+using namespace eyeslam::apps;
+
+const std::string kExamples =
+    "eyeslam-bench accuracy sequences/paper sequences/human --methods eyeslam,paper\n"
+    "eyeslam-bench speed sequences/human\n"
+    "eyeslam-bench detect sequences/*";
+
+struct BenchArguments {
+  std::vector<std::string> sequences;
+  std::vector<std::string> methods = eyeslam::baselines::methodNames();
+  int frames = 0;
+  int period = 30;
+  bool quiet = false;
+};
+
+std::string nameOf(const std::string& sequence)
+{
+  const std::filesystem::path path = std::filesystem::path(sequence).lexically_normal();
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
+// Runs every method over every sequence; `row` prints one line of the table.
+template <class Row>
+void forEachRun(const BenchArguments& arguments, Row&& row)
+{
+  for (const std::string& sequence : arguments.sequences) {
+    for (const std::string& method : arguments.methods) {
+      Progress progress(nameOf(sequence) + ", " + method, std::nullopt,
+                        arguments.quiet ? Verbosity::quiet : Verbosity::normal);
+      const auto step = [&](std::int64_t frame) { progress.show(frame + 1); };
+      row(nameOf(sequence), method, scoreMethod(method, sequence, arguments.frames, step));
+    }
+  }
+}
+
+void accuracy(const BenchArguments& arguments)
+{
+  fmt::print("| sequence | method | RMS px | RMS deg | worst px | under 5 px | tracked | CPU ms, median | p99 |\n");
+  fmt::print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+  forEachRun(arguments, [](const auto& sequence, const auto& method, const auto& score) {
+    fmt::print("| {} | {} | {:.3f} | {:.3f} | {:.2f} | {:.1f} % | {:.1f} % | {:.2f} | {:.2f} |\n", sequence, method,
+               score.rms_px, score.rms_deg, score.max_px, 100.0 * score.under_5_px, 100.0 * score.tracked,
+               score.cpu_ms_median, score.cpu_ms_p99);
+  });
+}
+
+void speed(const BenchArguments& arguments)
+{
+  fmt::print("| sequence | method | CPU ms, median | p99 | frames/s of one core |\n");
+  fmt::print("| --- | --- | --- | --- | --- |\n");
+  forEachRun(arguments, [](const auto& sequence, const auto& method, const auto& score) {
+    fmt::print("| {} | {} | {:.2f} | {:.2f} | {:.0f} |\n", sequence, method, score.cpu_ms_median, score.cpu_ms_p99,
+               1000.0 / score.cpu_ms_median);
+  });
+}
+
+void detect(const BenchArguments& arguments)
+{
+  fmt::print("| sequence | detector | points | on a vessel | coverage | from 6 px | CPU us |\n");
+  fmt::print("| --- | --- | --- | --- | --- | --- | --- |\n");
+  for (const std::string& detector : detectorNames()) {
+    DetectorScore mean;
+    const auto share = 1.0 / static_cast<double>(arguments.sequences.size());
+    const auto print = [&](const std::string& sequence, const DetectorScore& score) {
+      fmt::print("| {} | {} | {:.0f} | {:.1f} % | {:.1f} % | {:.1f} % | {:.0f} |\n", sequence, detector, score.points,
+                 100.0 * score.on_vessel, 100.0 * score.coverage, 100.0 * score.coverage_from_6_px, score.cpu_us);
+    };
+    for (const std::string& sequence : arguments.sequences) {
+      const DetectorScore score = scoreDetector(detector, sequence, arguments.period);
+      print(nameOf(sequence), score);
+      mean.points += share * score.points;
+      mean.on_vessel += share * score.on_vessel;
+      mean.coverage += share * score.coverage;
+      mean.coverage_from_6_px += share * score.coverage_from_6_px;
+      mean.cpu_us += share * score.cpu_us;
+    }
+    print("mean", mean);
+  }
+}
+
+CLI::App* addCommand(CLI::App& app, const std::string& name, const std::string& does, BenchArguments& arguments)
+{
+  CLI::App* command = app.add_subcommand(name, does);
+  command->add_option("SEQUENCES", arguments.sequences, "folders with a video and its truth")
+      ->required()
+      ->check(CLI::ExistingDirectory);
+  command->add_flag("--quiet", arguments.quiet, "no progress on standard error");
+  return command;
+}
+
+CLI::App* addMethodCommand(CLI::App& app, const std::string& name, const std::string& does, BenchArguments& arguments)
+{
+  CLI::App* command = addCommand(app, name, does, arguments);
+  command->add_option("--methods", arguments.methods, "which methods, separated by commas; default all")
+      ->delimiter(',')
+      ->check(CLI::IsMember(eyeslam::baselines::methodNames()));
+  command->add_option("--frames", arguments.frames, "at most so many frames of each; 0 = all")
+      ->check(CLI::Range(0, 1000000));
+  return command;
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  CLI::App app("Compares this tracker, and its parts, with the alternatives; prints Markdown tables.", "eyeslam-bench");
+  BenchArguments arguments;
+  addStandardOptions(app, kExamples);
+  app.require_subcommand(1);
+  const CLI::App* by_accuracy =
+      addMethodCommand(app, "accuracy", "errors of tracking methods against the truth", arguments);
+  const CLI::App* by_speed = addMethodCommand(app, "speed", "CPU time of tracking methods a frame", arguments);
+  CLI::App* by_detector = addCommand(app, "detect", "vessel detectors against labelled vessels", arguments);
+  by_detector->add_option("--period", arguments.period, "looks at one frame in so many")->check(CLI::Range(1, 10000));
+  return runProgram(app, argc, argv, [&] {
+    if (by_accuracy->parsed()) return accuracy(arguments);
+    if (by_speed->parsed()) return speed(arguments);
+    detect(arguments);
+  });
+}
