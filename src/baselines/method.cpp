@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "eyeslam/baselines/eyeslam_method.h"
+#include "eyeslam/baselines/feature_method.h"
 #include "eyeslam/baselines/paper_method.h"
 
 namespace eyeslam::baselines {
@@ -23,6 +24,15 @@ const std::vector<std::pair<std::string, Maker>>& makers()
   static const std::vector<std::pair<std::string, Maker>> kMakers = {
       {"eyeslam", [](const TrackerOptions& options) { return std::make_unique<EyeSlamMethod>(options); }},
       {"paper", [](const TrackerOptions& options) { return std::make_unique<PaperMethod>(options); }},
+      {"sift",
+       [](const TrackerOptions& options) {
+         return std::make_unique<FeatureMethod>(options, cv::SIFT::create(800, 3, 0.01), cv::NORM_L2);
+       }},
+      {"orb",
+       [](const TrackerOptions& options) {
+         return std::make_unique<FeatureMethod>(
+             options, cv::ORB::create(1500, 1.2F, 4, 15, 0, 2, cv::ORB::HARRIS_SCORE, 31, 5), cv::NORM_HAMMING);
+       }},
   };
   return kMakers;
 }
