@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command_line/clocks.h"
+#include "command_line/program.h"
 #include "command_line/version.h"
 #include "eyeslam/configuration/json.h"
 #include "eyeslam/configuration/listing.h"
@@ -74,9 +75,13 @@ void TrackRun::addObservers()
 
 void TrackRun::addMessages()
 {
-  observers_.push_back(
-      std::make_unique<MessagePublisher>(*arguments_.lcm, arguments_.key, pixel_size_.um_per_px.value_or(0.0),
-                                         configuration::yamlOf(options_), configuration::hashOf(options_)));
+  try {
+    observers_.push_back(
+        std::make_unique<MessagePublisher>(*arguments_.lcm, arguments_.key, pixel_size_.um_per_px.value_or(0.0),
+                                           configuration::yamlOf(options_), configuration::hashOf(options_)));
+  } catch (const std::runtime_error& error) {
+    throw UsageError(error.what());  // URL or key
+  }
   if (!arguments_.quiet && arguments_.key.empty()) {
     fmt::print(stderr, "eyeslam-track: no --key FILE: messages are unsigned and stay on this computer\n");
   }
