@@ -13,6 +13,7 @@
 #include "eyeslam/files/test_sequence.h"
 #include "eyeslam/files/video_file.h"
 #include "eyeslam/simulation/fundus_photograph.h"
+#include "eyeslam/simulation/procedural_fundus.h"
 #include "eyeslam/simulation/sequence_renderer.h"
 
 namespace {
@@ -31,8 +32,13 @@ struct Arguments {
   bool lossless = false;
 };
 
-simulation::Fundus fundusOf(const Arguments& arguments)
+simulation::Fundus fundusOf(const Arguments& arguments, double um_per_px)
 {
+  if (arguments.retina == "procedural") {
+    simulation::ProceduralFundusOptions procedural;
+    procedural.um_per_px = um_per_px;
+    return simulation::proceduralFundus(procedural, arguments.seed);
+  }
   const cv::Mat picture = cv::imread(arguments.retina, cv::IMREAD_COLOR);
   if (picture.empty()) throw files::FileError(arguments.retina + ": not a picture that can be read");
   cv::Mat mask;
@@ -84,7 +90,8 @@ void render(const Arguments& arguments)
   }
   options.frames = arguments.frames;
   options.seed = arguments.seed;
-  simulation::SequenceRenderer renderer(fundusOf(arguments), condition, options);
+  simulation::SequenceRenderer renderer(fundusOf(arguments, simulation::umPerPixel(condition.tissue, options)),
+                                        condition, options);
   files::OutputFolder folder(arguments.out,
                              {"video.mp4", "video.mkv", "truth.csv", "tool.csv", "vessels.png", "meta.json"});
   const std::string video_name = arguments.lossless ? "video.mkv" : "video.mp4";
