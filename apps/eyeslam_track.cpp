@@ -11,11 +11,21 @@ namespace {
 
 using namespace eyeslam::apps;
 
+constexpr const char* kDocumentHead =
+    "# Options of eyeslam-track\n\nFor `--set KEY=VALUE` and for `--config FILE.yaml`, in which groups nest. This page "
+    "is what\n"
+    "`eyeslam-track --dump-config=markdown` prints; `eyeslam-track --dump-config` prints a YAML file to start "
+    "from.\n\n";
+
 void dump(const TrackArguments& arguments)
 {
-  const auto options = configurationOf(arguments);
-  fmt::print("{}", arguments.dump == "markdown" ? eyeslam::configuration::markdownOf(options)
-                                                : eyeslam::configuration::yamlOf(options));
+  const TrackConfiguration options = configurationOf(arguments);
+  if (arguments.dump == "yaml")
+    fmt::print("{}", eyeslam::configuration::yamlOf(options));
+  else if (arguments.dump == "markdown")
+    fmt::print("{}{}", kDocumentHead, eyeslam::configuration::markdownOf(options));
+  else
+    throw UsageError(fmt::format("--dump-config={}: yaml or markdown is wanted", arguments.dump));
 }
 
 }  // namespace

@@ -193,6 +193,16 @@ class BadCall(TrackCase):
                               ("--um-per-px", "-2"), ("--um-per-px", "nan")):
             self.refuse("a.mp4", "--out", self.out, option, value, named=option)
 
+    def test_unknown_form_of_the_dump(self):
+        self.refuse("--dump-config=xml", named="xml")
+
+    def test_truth_without_frame_0(self):
+        self.refuse("a.mp4", "--out", self.out, "--truth", self.folder, "--from", "3", named="--from 3")
+
+    def test_truth_that_is_not_there(self):
+        video = retina_video(self.path("a.mp4"), 2)
+        self.assert_refused(self.run_track(video, "--truth", self.path("gone")), 1, "gone")
+
     def test_record_that_is_no_mkv(self):
         self.refuse("a.mp4", "--out", self.out, "--record", "a.mp4", named="a.mp4")
 

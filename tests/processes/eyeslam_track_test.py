@@ -2,6 +2,7 @@
 """eyeslam-track on input as it should be: eyeslam_track_test.py PROGRAM [unittest arguments]."""
 import json
 import os
+import shutil
 import signal
 import subprocess
 import time
@@ -11,7 +12,7 @@ import cv2
 import numpy as np
 
 from track_case import PROGRAM, TrackCase
-from track_inputs import SIZE, cut, image_folder, retina_frame, retina_video, write_video
+from track_inputs import SIZE, image_folder, retina_frame, retina_video, write_video
 
 TIMING_COLUMNS = ("cpu_ms", "map_cpu_ms")  # measured, so they differ from run to run
 
@@ -24,7 +25,8 @@ class GoodInput(TrackCase):
         names = {os.path.relpath(os.path.join(root, name), self.out) for root, _, names in os.walk(self.out) for name in names}
         maps = {f"map/{kind}_{frame:06}.{ending}" for frame in (10, 20, 29)
                 for kind, ending in (("map", "png"), ("map", "json"), ("seen", "png"))}
-        self.assertLessEqual(maps | {"trajectory.csv", "vessels.csv", "mosaic.png", "mosaic.json", "run.json"}, names)
+        self.assertLessEqual(maps | {"trajectory.csv", "vessels.csv", "mosaic.png", "mosaic.json", "overlay.mp4",
+                                 "run.json"}, names)
 
     def test_writes_a_row_a_frame_with_no_empty_field_but_the_reason(self):
         self.assert_done(self.run_track(retina_video(self.path("a.mp4"))))
@@ -152,6 +154,40 @@ class GoodInput(TrackCase):
         again = subprocess.run([PROGRAM, "--dump-config", "--config", self.path("my.yaml")], capture_output=True, text=True)
         self.assertEqual(dump.stdout, again.stdout)
         self.assertIn("scale: 0.4", again.stdout)
+
+
+    def test_says_the_options_as_the_documentation_has_them(self):
+        page = os.path.join(os.path.dirname(__file__), "../../docs/configuration.md")
+        printed = subprocess.run([PROGRAM, "--dump-config=markdown"], capture_output=True, text=True)
+        with open(page) as file:
+            self.assertEqual(printed.stdout, file.read(), "eyeslam-track --dump-config=markdown > docs/configuration.md")
+
+    @unittest.skipUnless(shutil.which("xvfb-run"), "xvfb-run is not installed")
+    def test_shows_frames_in_a_window(self):
+        video = retina_video(self.path("a.mp4"), 5)
+        process = subprocess.run(["xvfb-run", "-a", PROGRAM, video, "--out", self.out, "--display"], capture_output=True,
+                                 text=True, timeout=120)
+        self.assert_done(process)
+
+    def test_asks_for_a_screen_only_where_one_is_needed(self):
+        environment = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
+        video = retina_video(self.path("a.mp4"), 3)
+        self.assert_done(self.run_track(video, env=environment))
+        shutil.rmtree(self.out)
+        self.assert_refused(self.run_track(video, "--display", env=environment), 2, "--display")
+
+    def test_draws_the_truth_beside_the_estimate(self):
+        sequence = os.path.join(os.environ.get("EYESLAM_SHARED", ""), "sequences", "human")
+        if not os.path.isdir(sequence):
+            self.skipTest("no sequence with truth: EYESLAM_SHARED/sequences/human")
+        self.assert_done(self.run_track(os.path.join(sequence, "video.mp4"), "--truth", sequence, "--to", "40"))
+        for name in ("truth_pose.png", "truth_map.png"):
+            self.assertIsNotNone(cv2.imread(os.path.join(self.out, name)), name)
+
+    def test_overlay_has_a_picture_a_frame(self):
+        self.assert_done(self.run_track(retina_video(self.path("a.mp4"), 7)))
+        capture = cv2.VideoCapture(os.path.join(self.out, "overlay.mp4"))
+        self.assertEqual(sum(1 for _ in iter(lambda: capture.grab(), False)), 7)
 
 
 class NothingToSee(TrackCase):
