@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/imgproc.hpp>
 
+#include "eyeslam/baselines/contrast_picture.h"
 #include "eyeslam/baselines/full_pixels.h"
 
 namespace eyeslam::baselines {
@@ -15,7 +15,6 @@ using retina::Reason;
 
 namespace {
 
-constexpr double kGain = 500.0 / tracking::Frame::kContrastUnit;  // a vessel of 20 % contrast takes 100 grey levels
 constexpr float kRatio = 0.8F;         // of the best distance to the second best; source: Lowe 2004
 constexpr double kInlier_px = 1.5;     // frame px; 1 to 3 alike
 constexpr int kLeastInliers = 12;      // a chance similarity gathers 4 or 5
@@ -53,10 +52,7 @@ Reason FeatureMethod::observe(const cv::Mat& image)
   const auto& limits = options_.localizer;
   if (mask_.medianRed() < limits.least_red || mask_.visibleFraction() < limits.least_visible) return Reason::blackout;
   frame_.normalise(mask_);
-  frame_.contrast().convertTo(picture_, CV_8U, kGain, 128.0);
-  const cv::Mat shown = mask_.cells() == tracking::OcclusionMask::kVisible;
-  cv::resize(shown, visible_, {}, tracking::Frame::kCell, tracking::Frame::kCell, cv::INTER_NEAREST);
-  visible_ = visible_(cv::Rect({0, 0}, picture_.size()));
+  makeContrastPicture(frame_, mask_, picture_, visible_);
   features_->detectAndCompute(picture_, visible_, now_.keypoints, now_.descriptors);
   return static_cast<int>(now_.keypoints.size()) < kLeastInliers ? Reason::too_few_points : Reason::none;
 }

@@ -10,6 +10,7 @@
 
 #include "eyeslam/baselines/eyeslam_method.h"
 #include "eyeslam/baselines/feature_method.h"
+#include "eyeslam/baselines/klt_method.h"
 #include "eyeslam/baselines/paper_method.h"
 
 namespace eyeslam::baselines {
@@ -33,6 +34,7 @@ const std::vector<std::pair<std::string, Maker>>& makers()
          return std::make_unique<FeatureMethod>(
              options, cv::ORB::create(1500, 1.2F, 4, 15, 0, 2, cv::ORB::HARRIS_SCORE, 31, 5), cv::NORM_HAMMING);
        }},
+      {"klt", [](const TrackerOptions& options) { return std::make_unique<KltMethod>(options); }},
   };
   return kMakers;
 }
