@@ -20,7 +20,7 @@ def run(line, environment):
 def main():
     environment = dict(os.environ, PATH=os.path.abspath(sys.argv[1]) + ":" + os.environ["PATH"])
     sequence = "out/documents/sequence"
-    failed = [] if run(f"eyeslam-sim --quiet --out {sequence} --duration 2", environment) else ["rendering a video"]
+    failed = [] if run(f"eyeslam-sim --out {sequence} --condition human --seed 2 --frames 60", environment) else ["rendering a video"]
     for path in documents():
         for line in commands(tree.text(path)):
             if line.startswith(SKIPPED):
