@@ -118,6 +118,8 @@ bool EyeSlamTracker::Steps::isDark() const
 
 const TrackResult& EyeSlamTracker::Steps::startMap()
 {
+  // A white wall has no vessels either: nothing could ever be matched against such a map.
+  if (static_cast<int>(chosen_.size()) < options_.matcher.min_points) return refuse(Reason::too_few_points);
   const PoseEstimate origin{{}, 1e-6 * Eigen::Matrix3d::Identity()};
   const MaskedContrast picture(frame_, mask_);
   start_frame_ = result_.frame;
