@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstring>
 #include <opencv2/videoio.hpp>
+#include <utility>
 #include <vector>
 
 #include "eyeslam/files/file_error.h"
@@ -21,7 +22,7 @@ extern char** environ;
 namespace eyeslam::files {
 namespace {
 
-// Starts `ffmpeg` with standard input from `input`; -1 when it cannot be started.
+// Starts `ffmpeg` with standard input from `input`; -1 when it does not start.
 pid_t startEncoder(const std::vector<std::string>& arguments, int input)
 {
   std::vector<char*> words;
@@ -29,11 +30,7 @@ pid_t startEncoder(const std::vector<std::string>& arguments, int input)
   words.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  if (input >= 0) {
-    posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
-  } else {
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  }
+  posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
   pid_t process = -1;
@@ -52,12 +49,6 @@ int exitStatus(pid_t process)
 }
 
 }  // namespace
-
-bool EncodedVideo::isAvailable()
-{
-  const pid_t process = startEncoder({"ffmpeg", "-hide_banner", "-version"}, -1);
-  return process > 0 && exitStatus(process) == 0;
-}
 
 EncodedVideo::EncodedVideo(const std::string& path, std::string shown, cv::Size size, double frames_per_second, int crf)
     : path_(path), shown_(std::move(shown)), size_(size)
@@ -85,6 +76,15 @@ EncodedVideo::EncodedVideo(const std::string& path, std::string shown, cv::Size 
   pipe_ = ends[1];
   if (encoder_ < 0) fail("the program ffmpeg does not start; install the package ffmpeg");
 }
+
+EncodedVideo::EncodedVideo(EncodedVideo&& other) noexcept
+    : path_(std::move(other.path_)),
+      shown_(std::move(other.shown_)),
+      size_(other.size_),
+      encoder_(std::exchange(other.encoder_, -1)),
+      pipe_(std::exchange(other.pipe_, -1)),
+      count_(other.count_)
+{}
 
 EncodedVideo::~EncodedVideo() { finish(); }
 

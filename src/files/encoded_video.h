@@ -13,15 +13,13 @@ namespace eyeslam::files {
 /// out the finest vessels, and ignores OPENCV_FFMPEG_WRITER_OPTIONS.
 class EncodedVideo {
  public:
-  /// Whether `ffmpeg` can be started.
-  static bool isAvailable();
-
   /// @param path   where to write; `shown` names the file in messages
   /// @param size   of all frames, even
   /// @param crf    quality, 0 (best) to 51
   /// @throws FileError when the encoder does not start
   EncodedVideo(const std::string& path, std::string shown, cv::Size size, double frames_per_second, int crf);
   ~EncodedVideo();
+  EncodedVideo(EncodedVideo&& other) noexcept;
   EncodedVideo(const EncodedVideo&) = delete;
   EncodedVideo& operator=(const EncodedVideo&) = delete;
 
