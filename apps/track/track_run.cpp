@@ -110,6 +110,7 @@ void TrackRun::run()
   writeRecord(monotonicSeconds() - start);
   publish();
   sayNotices();
+  saySnapshotsMissed();
   sayDone();
 }
 
@@ -196,6 +197,16 @@ void TrackRun::sayInterrupted() const
     throw files::FileError(arguments_.input + ": interrupted before the first frame; nothing written");
   fmt::print(stderr, "eyeslam-track: interrupted after frame {}; what was done is kept in {}\n", last_frame_,
              arguments_.out);
+}
+
+void TrackRun::saySnapshotsMissed() const
+{
+  for (const std::int64_t frame : snapshots_) {
+    const bool tracked = frame >= arguments_.from && frame <= last_frame_;
+    if (tracked || arguments_.quiet) continue;
+    fmt::print(stderr, "eyeslam-track: --snapshots {}: not kept, the frames tracked are {} to {}\n", frame,
+               arguments_.from, last_frame_);
+  }
 }
 
 void TrackRun::sayDone() const

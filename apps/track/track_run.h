@@ -38,6 +38,7 @@ class TrackRun {
   void publish();
   void sayNotices();
   void sayInterrupted() const;
+  void saySnapshotsMissed() const;
   void sayDone() const;
 
   const TrackArguments& arguments_;

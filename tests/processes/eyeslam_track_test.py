@@ -45,6 +45,11 @@ class GoodInput(TrackCase):
         self.assertAlmostEqual(float(self.rows()[0]["t_s"]), 5 / 30, delta=0.002)
         self.assertTrue(os.path.exists(os.path.join(self.out, "map/map_000014.png")))
 
+    def test_names_a_snapshot_that_no_frame_gave(self):
+        process = self.run_track(retina_video(self.path("a.mp4"), 3), "--snapshots", "1,99")
+        self.assert_done(process)
+        self.assertIn("--snapshots 99", process.stderr)
+
     def test_takes_one_frame_as_a_normal_run(self):
         self.assert_done(self.run_track(image_folder(self.path("one"), 1)))
         self.assertEqual(len(self.rows()), 1)
