@@ -19,8 +19,8 @@ from skimage.morphology import skeletonize
 import net as nets
 
 TOLERANCE_PX, SEEN_FRAMES = 4.0, 9
-THRESHOLDS = (-2.0, -1.5, -1.0, -0.75, -0.5, -0.25, 0.0)
-DEFAULT = -0.5
+THRESHOLDS = (-2.0, -1.5, -1.0, -0.7, -0.5, -0.25, 0.0)
+DEFAULT = -0.7
 CALIBRES = (1, 4, 6, 8, 10, 14, 20, 99)
 APRON, GRID = 32, 128
 

@@ -23,7 +23,7 @@ void MapVesselDetector::finish(double px_per_cell, cv::Mat_<std::int8_t> log_odd
   const auto unit = static_cast<float>(px_per_cell);
   for (int y = 0; y < kBlock; ++y) {
     for (int x = 0; x < kBlock; ++x) {
-      const bool known = count_(y + kApron, x + kApron) > 0;
+      const bool known = count_(y + kApron, x + kApron) > 0 || contrast_(y + kApron, x + kApron) != 0;
       const float odds = std::round(kLogOddsUnit * net_.logOdds(x + kApron, y + kApron));
       const float width = std::round(unit * net_.calibre(x + kApron, y + kApron));
       log_odds(y, x) = known ? static_cast<std::int8_t>(std::clamp(odds, -127.0F, 127.0F)) : kNeverSeen;

@@ -18,11 +18,11 @@
 namespace eyeslam::tracking {
 
 struct PublishedMapOptions {
-  double threshold_log_odds = -0.5;
+  double threshold_log_odds = -0.7;
   int least_length = 12;
   int slice_work = 150;
-  double renewal_samples = 1.0;
-  double renewal_area = 0.02;
+  double renewal_samples = 0.5;
+  double renewal_area = 0.08;
   int renewal_rows = 4096;
 
   template <class Self, class Visitor>

@@ -122,7 +122,7 @@ void VesselNet::begin(const cv::Mat_<std::int16_t>& contrast, const cv::Mat_<std
       float* to = input_.row(phase(p, y), y / 2);
       float* seen = input_.row(4 + phase(p, y), y / 2);
       for (int x = 0; x < kRegion / 2; ++x) {
-        const bool known = counts[2 * x + p] > 0;
+        const bool known = counts[2 * x + p] > 0 || values[2 * x + p] != 0;
         const float value = static_cast<float>(values[2 * x + p]) / kInputUnit;
         to[x] = known ? std::clamp(value, -kInputLimit, kInputLimit) : 0.0F;
         seen[x] = known ? 1.0F : 0.0F;

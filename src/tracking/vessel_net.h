@@ -48,7 +48,8 @@ class VesselNet {
 
   VesselNet();
 
-  /// Takes a region, kRegion x kRegion: contrast of the mosaic and number of samples (0 = never seen).
+  /// Takes a region, kRegion x kRegion: contrast of the mosaic and number of samples. A pixel
+  /// whose samples were outvoted has none for a while but keeps its contrast: it counts as seen.
   void begin(const cv::Mat_<std::int16_t>& contrast, const cv::Mat_<std::uint8_t>& count);
   /// Works one layer. @return its cost in multiplications; 0 when all are done
   std::size_t step();

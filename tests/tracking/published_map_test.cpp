@@ -136,12 +136,14 @@ TEST_P(DrawnVessel, IsFoundInFullWidthWithItsCalibre)
     std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
     return v[v.size() / 2];
   };
-  constexpr double kCalibreError_px = 1.5, kOneCell_px = 2.0;
-  EXPECT_NEAR(median(calibre), width, kCalibreError_px);
+  // Widths follow the labels of photographs, whose vessels have softer edges than a drawn band.
+  constexpr double kOneCell_px = 2.0;
+  EXPECT_NEAR(median(calibre), width, kOneCell_px);
   EXPECT_NEAR(median(across), width, kOneCell_px);
 }
 
-INSTANTIATE_TEST_SUITE_P(OfEachWidth, DrawnVessel, testing::Values(6, 8, 16, 20), testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(OfEachWidth, DrawnVessel, testing::Values(6, 8, 10, 12, 16, 20),
+                         testing::PrintToStringParamName());
 
 TEST(PublishedMap, ClaimsNothingOnNoise)
 {
