@@ -51,7 +51,7 @@ void Anchor::startAgain(const Mosaic& mosaic, std::int64_t frames_since_start)
   if (!rough) return;  // nothing better is known than that the view stood still
   motion_ = -rough->translation() / static_cast<double>(std::max<std::int64_t>(1, frames_since_start));
   const Refinement found = registerSmeared(mosaic, *rough);
-  goal_ = now_ = found.converged && found.ncc > kLeastNcc ? found.map_T_frame : *rough;
+  goal_ = now_ = found.valid && found.ncc > kLeastNcc ? found.map_T_frame : *rough;
 }
 
 void Anchor::update(const Mosaic& mosaic, std::int64_t frames_since_start)
@@ -76,7 +76,7 @@ void Anchor::registerStart(const Mosaic& mosaic)
   const Refinement found = smeared_ ? registerSmeared(mosaic, goal_) : registerSharp(mosaic);
   const double moved = (found.map_T_frame.translation() - goal_.translation()).norm();
   // The last registration is nearly right: a result far off is an error of this one.
-  if (found.converged && found.ncc >= kLeastNcc && moved < kFarthest_px) goal_ = found.map_T_frame;
+  if (found.valid && found.ncc >= kLeastNcc && moved < kFarthest_px) goal_ = found.map_T_frame;
 }
 
 Refinement Anchor::registerSharp(const Mosaic& mosaic)

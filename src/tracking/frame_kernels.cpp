@@ -14,6 +14,9 @@ namespace {
 using Bytes = std::uint8_t __attribute__((vector_size(16)));
 using Words = std::uint16_t __attribute__((vector_size(16)));
 
+// A rounded quarter of a sum that fits sixteen bits; said so, or the compiler widens the vectors to 32.
+inline std::int16_t quarter(int sum) { return static_cast<std::int16_t>(static_cast<std::int16_t>(sum + 2) >> 2); }
+
 }  // namespace
 
 // Sixteen BGR pixels are three vectors; two shuffles collect their greens, and adjacent ones are added as the low and
@@ -98,12 +101,12 @@ EYESLAM_VECTOR_KERNEL void smoothRow(const std::int16_t* above, const std::int16
 {
   std::int16_t* column = scratch + 1;
   for (int i = 0; i < count; ++i) {
-    column[i] = static_cast<std::int16_t>((above[i] + 2 * middle[i] + below[i] + 2) >> 2);
+    column[i] = quarter(above[i] + 2 * middle[i] + below[i]);
   }
   column[-1] = column[0];
   column[count] = column[count - 1];
   for (int i = 0; i < count; ++i) {
-    smooth[i] = static_cast<std::int16_t>((column[i - 1] + 2 * column[i] + column[i + 1] + 2) >> 2);
+    smooth[i] = quarter(column[i - 1] + 2 * column[i] + column[i + 1]);
   }
 }
 

@@ -63,7 +63,7 @@ bool Localizer::matchNear(const View& view)
 {
   const MatchResult match = matcher_.match(view.points, view.occupancy, view.predicted);
   if (match.reason != retina::Reason::none) return false;
-  return confirm(view, match.map_T_frame, match.score, Trust::expected);
+  return confirm(view, match.map_T_frame, match.score);
 }
 
 bool Localizer::matchWide(const View& view)
@@ -75,14 +75,14 @@ bool Localizer::matchWide(const View& view)
   const MatchResult match =
       matcher_.search(few_, view.occupancy, {view.predicted.map_T_frame, reach, reach, options_.wide_steps * step});
   if (match.reason != retina::Reason::none) return false;
-  return confirm(view, match.map_T_frame, match.score, Trust::surprising);
+  return confirm(view, match.map_T_frame, match.score);
 }
 
 // Too smeared for points: the dark and bright areas still correlate.
 bool Localizer::matchDense(const View& view)
 {
   const auto found = dense_search_.find(view.mosaic, view.frame, view.predicted.map_T_frame);
-  return found && confirm(view, *found, 0.0, Trust::surprising);
+  return found && confirm(view, *found, 0.0);
 }
 
 bool Localizer::matchAnywhere(const View& view)
@@ -90,13 +90,13 @@ bool Localizer::matchAnywhere(const View& view)
   const MatchResult match = relocalizer_.search(view.points, view.occupancy, view.predicted.map_T_frame);
   if (match.reason == retina::Reason::searching && best_.reason != retina::Reason::none) best_.reason = match.reason;
   if (match.reason != retina::Reason::none) return false;
-  return confirm(view, match.map_T_frame, match.score, Trust::surprising);
+  return confirm(view, match.map_T_frame, match.score);
 }
 
 // Refines a candidate, smeared where the view moved fast, and compares it with the mosaic; keeps it when it is the best
-// so far. A wrong angle may pass the plain threshold, so a surprising place must correlate nearly as well as frames
-// usually do.
-bool Localizer::confirm(const View& view, const retina::Pose2& start, double score, Trust trust)
+// so far. A wrong place may pass the plain threshold, so a candidate that correlates much worse than frames usually do
+// is kept, but the search goes on.
+bool Localizer::confirm(const View& view, const retina::Pose2& start, double score)
 {
   collectTemplate(view.mosaic, view.frame, start, template_);
   Refinement refined = refiner_.refine(view.frame.contrast, template_, start, view.freedom, options_.scale_sigma);
@@ -104,11 +104,11 @@ bool Localizer::confirm(const View& view, const retina::Pose2& start, double sco
   const SmearModelOptions& smear = smear_model_.options();
   if (motion.norm() > smear.least_motion_px && refined.ncc < smear.ncc_share * running_ncc_) {
     const Refinement smeared =
-        smear_model_.refine(view.mosaic, view.frame, template_, refined.converged ? refined.map_T_frame : start, motion,
+        smear_model_.refine(view.mosaic, view.frame, template_, refined.valid ? refined.map_T_frame : start, motion,
                             view.freedom, options_.scale_sigma);
-    if (smeared.converged && smeared.ncc > refined.ncc) refined = smeared;
+    if (smeared.valid && smeared.ncc > refined.ncc) refined = smeared;
   }
-  if (!refined.converged || refined.ncc < options_.least_ncc) return false;
+  if (!refined.valid || refined.ncc < options_.least_ncc) return false;
   if (refined.ncc > best_.ncc) {
     best_ = {retina::Reason::none,
              {refined.map_T_frame, refined.covariance.topLeftCorner<3, 3>()},
@@ -116,7 +116,7 @@ bool Localizer::confirm(const View& view, const retina::Pose2& start, double sco
              refined.ncc,
              refined.sigma};
   }
-  return trust == Trust::expected || refined.ncc >= options_.wide_ncc_share * running_ncc_;
+  return refined.settled && refined.ncc >= options_.ncc_share * running_ncc_;
 }
 
 }  // namespace eyeslam::tracking

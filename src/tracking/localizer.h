@@ -45,8 +45,7 @@ class Localizer {
 
  private:
   struct View;  // what all searches of one frame share
-  enum class Trust { expected, surprising };
-  bool confirm(const View& view, const retina::Pose2& start, double score, Trust trust);
+  bool confirm(const View& view, const retina::Pose2& start, double score);
   bool matchNear(const View& view);
   bool matchWide(const View& view);
   bool matchDense(const View& view);

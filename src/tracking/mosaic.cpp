@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "eyeslam/tracking/cubic_sampler.h"
 #include "eyeslam/tracking/vector_kernel.h"
@@ -28,7 +29,7 @@ void clip(double start, double step, double lowest, double highest, double& from
 
 // Squared gradients of one row of the strip by 3x3 smoothed central differences; 0 next to a pixel never seen.
 EYESLAM_VECTOR_KERNEL void gradientRow(const float* above, const float* middle, const float* below,
-                                       const std::uint8_t* known, float* gx, float* gy, float* strength)
+                                       const std::uint8_t* counts, int stride, float* gx, float* gy, float* strength)
 {
   constexpr float kEighth = 0.125F;
   for (int i = 0; i < kTile; ++i) {
@@ -36,7 +37,12 @@ EYESLAM_VECTOR_KERNEL void gradientRow(const float* above, const float* middle, 
     const float dy = (below[i] - above[i]) + 2.0F * (below[i + 1] - above[i + 1]) + (below[i + 2] - above[i + 2]);
     gx[i] = kEighth * dx;
     gy[i] = kEighth * dy;
-    strength[i] = known[i] ? gx[i] * gx[i] + gy[i] * gy[i] : 0.0F;
+  }
+  std::uint8_t least[kTile + 2];
+  for (int i = 0; i < kTile + 2; ++i) least[i] = std::min({counts[i], counts[i + stride], counts[i + 2 * stride]});
+  for (int i = 0; i < kTile; ++i) {
+    const std::uint8_t known = std::min({least[i], least[i + 1], least[i + 2]});
+    strength[i] = known > 0 ? gx[i] * gx[i] + gy[i] * gy[i] : 0.0F;
   }
 }
 
@@ -146,20 +152,21 @@ void Mosaic::gatherStrip(int tx, int ty, int block_row)
     const int y = (row + kTile) % kTile;
     float* values = strip_.data() + r * kStripWidth;
     std::uint8_t* counts = strip_count_.data() + r * kStripWidth;
-    const auto copy = [&](int source_tx, int x, int count, int to) {
-      const Tile* tile = tiles_.find(source_tx, from_ty);
-      if (!tile) {
-        std::fill_n(values + to, count, 0.0F);
-        std::fill_n(counts + to, count, std::uint8_t{0});
-        return;
-      }
-      const std::size_t at = static_cast<std::size_t>(y * kTile + x);
-      std::copy_n(tile->mean.data() + at, count, values + to);
-      std::copy_n(tile->count.data() + at, count, counts + to);
-    };
-    copy(tx - 1, kTile - 1, 1, 0);
-    copy(tx, 0, kTile, 1);
-    copy(tx + 1, 0, 1, kTile + 1);
+    const auto at = static_cast<std::size_t>(y * kTile);
+    const Tile* left = tiles_.find(tx - 1, from_ty);
+    const Tile* here = tiles_.find(tx, from_ty);
+    const Tile* right = tiles_.find(tx + 1, from_ty);
+    values[0] = left ? left->mean[at + kTile - 1] : 0.0F;
+    counts[0] = left ? left->count[at + kTile - 1] : std::uint8_t{0};
+    values[kTile + 1] = right ? right->mean[at] : 0.0F;
+    counts[kTile + 1] = right ? right->count[at] : std::uint8_t{0};
+    if (here) {
+      std::memcpy(values + 1, here->mean.data() + at, kTile * sizeof(float));
+      std::memcpy(counts + 1, here->count.data() + at, kTile);
+    } else {
+      std::fill_n(values + 1, kTile, 0.0F);
+      std::fill_n(counts + 1, kTile, std::uint8_t{0});
+    }
   }
 }
 
@@ -167,24 +174,14 @@ void Mosaic::chooseInBlockRow(Tile& tile, int tx, int ty, int block_row)
 {
   gatherStrip(tx, ty, block_row);
   std::array<float, kTile> gx, gy, strength;
-  std::array<std::uint8_t, kTile> known;
   std::array<TemplatePixel, kBlocksAcross> best{};
   std::array<float, kBlocksAcross> most;
   most.fill(static_cast<float>(options_.least_gradient * options_.least_gradient) * Frame::kContrastUnit *
             Frame::kContrastUnit);
   for (int r = 1; r <= kBlockHeight; ++r) {
-    const std::uint8_t* above = strip_count_.data() + (r - 1) * kStripWidth;
-    for (int i = 0; i < kTile; ++i) {
-      bool all = true;
-      for (int v = 0; v < 3; ++v) {
-        const std::uint8_t* at = above + v * kStripWidth + i;
-        all &= (at[0] > 0) & (at[1] > 0) & (at[2] > 0);
-      }
-      known[static_cast<std::size_t>(i)] = all;
-    }
     const float* middle = strip_.data() + r * kStripWidth;
-    gradientRow(middle - kStripWidth, middle, middle + kStripWidth, known.data(), gx.data(), gy.data(),
-                strength.data());
+    gradientRow(middle - kStripWidth, middle, middle + kStripWidth, strip_count_.data() + (r - 1) * kStripWidth,
+                kStripWidth, gx.data(), gy.data(), strength.data());
     for (std::size_t i = 0; i < kTile; ++i) {
       const std::size_t block = i / kBlockWidth;
       if (strength[i] <= most[block]) continue;

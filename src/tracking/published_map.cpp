@@ -164,7 +164,8 @@ double PublishedMap::urgency(const Mosaic& mosaic, const cv::Point& at) const
   if (rows == 0) return 0.0;
   const BlockState now = stateNow(mosaic, at);
   constexpr double kArea = kBlock * kBlock;
-  const double area = (now.known - then.known) / (options_.renewal_area * kArea);
+  // A strip at the end of what was seen counts by its own size, or vessels there would wait for long.
+  const double area = (now.known - then.known) / (options_.renewal_area * std::max<double>(then.known, kArea / 4.0));
   if (!then.looked_at) return 1e6 + area;
   const double samples =
       (static_cast<double>(now.samples) / std::max(1U, then.samples) - 1.0) / options_.renewal_samples;

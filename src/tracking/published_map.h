@@ -38,8 +38,9 @@ struct PublishedMapOptions {
                   "spent in a slice; a block of 128 x 128 cells takes 143 and about 7 ms; source: docs/vessel_map.md");
     visitor.field("renewal_samples", self.renewal_samples, Range{0.01, 100.0}, "of the samples it had",
                   "a block is looked at again once its mosaic gained so many; source: docs/vessel_map.md");
-    visitor.field("renewal_area", self.renewal_area, Range{0.001, 1.0}, "of the block",
-                  "or once so much of it came into view; source: docs/vessel_map.md");
+    visitor.field(
+        "renewal_area", self.renewal_area, Range{0.001, 1.0}, "of what it knew",
+        "or once so much more of it came into view (a quarter block counts at least); source: docs/vessel_map.md");
     visitor.field("renewal_rows", self.renewal_rows, Range{64, 100000000}, "rows of 64 px",
                   "or once so many rows were blended, for the retina changes: burns; source: 4096 are about 8 s");
   }

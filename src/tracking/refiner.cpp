@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t kSums = 14;  // ten of the information's upper half, four of the gradient
 constexpr std::size_t kLaneCount = 8;
+constexpr double kSmallestScale = 0.2, kLargestScale = 5.0;
 constexpr float kOutside = 1e6F;  // residual of a pixel that left the frame: beyond every cut
 
 // Weighted sums over lanes; an associative order of our own, since the compiler may not choose one for floats.
@@ -182,6 +183,25 @@ Eigen::Matrix4d Refiner::covarianceOf(const AlignmentTemplate& pixels, const Nor
   return covariance;
 }
 
+// One Gauss-Newton step from weighted sums; nothing when they do not fix the pose.
+std::optional<Eigen::Vector4d> Refiner::solve(NormalEquations normal, Freedom freedom, double scale_weight,
+                                              double scale_offset)
+{
+  if (freedom == Freedom::similarity) {
+    normal.information(3, 3) += scale_weight;
+    normal.gradient[3] += scale_weight * scale_offset;
+  } else {
+    normal.information.row(3).setZero();
+    normal.information.col(3).setZero();
+    normal.information(3, 3) = 1.0;
+    normal.gradient[3] = 0.0;
+  }
+  const Eigen::LDLT<Eigen::Matrix4d> solver(normal.information);
+  const Eigen::Vector4d move = -solver.solve(normal.gradient);
+  if (solver.info() != Eigen::Success || !solver.isPositive() || !move.allFinite()) return std::nullopt;
+  return move;
+}
+
 Refinement Refiner::refine(const cv::Mat_<std::int16_t>& contrast, const AlignmentTemplate& pixels,
                            const retina::Pose2& start, Freedom freedom, double scale_sigma)
 {
@@ -191,54 +211,38 @@ Refinement Refiner::refine(const cv::Mat_<std::int16_t>& contrast, const Alignme
   if (result.pixels < options_.least_pixels) return result;
   const CubicSampler sample(contrast);
   const double radius = 0.25 * (contrast.cols + contrast.rows);
-  const int n = freedom == Freedom::rigid ? 3 : 4;
   retina::Pose2& pose = result.map_T_frame;
-  NormalEquations normal;
-  double cut = 0.0;
   int coarse_left = options_.coarse_steps;
+  double moved = 0.0;
   for (int step = 0; step < options_.most_steps; ++step) {
     const bool coarse = coarse_left > 0;
-    computeResiduals(sample, contrast.size(), pixels, pose,
-                     coarse ? static_cast<std::size_t>(options_.coarse_stride) : 1);
-    result.sigma = robustSigma();
-    cut = (step == 0 ? options_.first_cut_sigmas : options_.cut_sigmas) * result.sigma;
-    normal = accumulate(0, residual_.size(), cut);
-    Eigen::Matrix4d information = normal.information;
-    Eigen::Vector4d gradient = normal.gradient;
-    if (freedom == Freedom::similarity) {
-      const double weight = result.sigma * result.sigma / (scale_sigma * scale_sigma);
-      information(3, 3) += weight;
-      gradient[3] += weight * (pose.scale - start.scale);
-    } else {
-      information.row(3).setZero();
-      information.col(3).setZero();
-      information(3, 3) = 1.0;
-      gradient[3] = 0.0;
-    }
-    const Eigen::LDLT<Eigen::Matrix4d> solver(information);
-    const Eigen::Vector4d move = -solver.solve(gradient);
-    if (solver.info() != Eigen::Success || !solver.isPositive() || !move.allFinite()) return result;
-    pose.x += move[0];
-    pose.y += move[1];
-    pose.theta += move[2];
-    pose.scale += move[3];
-    if (!(pose.scale > 0.2 && pose.scale < 5.0)) return result;
-    const double moved = length(move, radius);
-    if (coarse) {
-      coarse_left = moved < options_.coarse_step_px ? 0 : coarse_left - 1;
-    } else if (moved < options_.last_step_px) {
-      break;
-    }
+    const int stride = coarse ? options_.coarse_stride : 1;
+    computeResiduals(sample, contrast.size(), pixels, pose, static_cast<std::size_t>(stride));
+    const double sigma = robustSigma();
+    const double cut = (step == 0 ? options_.first_cut_sigmas : options_.cut_sigmas) * sigma;
+    const double scale_weight = sigma * sigma / (scale_sigma * scale_sigma);
+    const auto move = solve(accumulate(0, residual_.size(), cut), freedom, scale_weight, pose.scale - start.scale);
+    if (!move) return result;
+    pose = {pose.x + (*move)[0], pose.y + (*move)[1], pose.theta + (*move)[2], pose.scale + (*move)[3]};
+    if (!(pose.scale > kSmallestScale && pose.scale < kLargestScale)) return result;
+    moved = length(*move, radius);
+    if (coarse) coarse_left = moved < options_.coarse_step_px ? 0 : coarse_left - 1;
+    if (!coarse && moved < options_.last_step_px) break;
   }
-  (void)n;
-  computeResiduals(sample, contrast.size(), pixels, pose, 1);
-  result.sigma = robustSigma();
-  cut = options_.cut_sigmas * result.sigma;
-  normal = accumulate(0, residual_.size(), cut);
-  result.ncc = correlation(options_.ncc_sigmas * result.sigma);
-  result.covariance = covarianceOf(pixels, normal, cut, freedom);
-  result.converged = result.covariance.allFinite();
+  // After a small step the residuals at hand serve for what follows.
+  if (moved >= options_.last_step_px) computeResiduals(sample, contrast.size(), pixels, pose, 1);
+  result.settled = moved < options_.settled_px;
+  judge(pixels, freedom, result);
   return result;
+}
+
+void Refiner::judge(const AlignmentTemplate& pixels, Freedom freedom, Refinement& result)
+{
+  result.sigma = robustSigma();
+  const double cut = options_.cut_sigmas * result.sigma;
+  result.ncc = correlation(options_.ncc_sigmas * result.sigma);
+  result.covariance = covarianceOf(pixels, accumulate(0, residual_.size(), cut), cut, freedom);
+  result.valid = result.covariance.allFinite();
 }
 
 }  // namespace eyeslam::tracking

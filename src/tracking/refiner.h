@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "eyeslam/retina/options.h"
@@ -19,7 +20,8 @@ struct RefinerOptions {
   int coarse_steps = 3;
   double coarse_step_px = 0.1;
   int most_steps = 8;
-  double last_step_px = 0.004;
+  double last_step_px = 0.02;
+  double settled_px = 0.2;
   double cut_sigmas = 3.0;
   double first_cut_sigmas = 6.0;
   double ncc_sigmas = 4.0;
@@ -34,7 +36,10 @@ struct RefinerOptions {
     visitor.field("coarse_steps", self.coarse_steps, Range{0, 32}, "steps", "on those; source: tracker study 2.9");
     visitor.field("coarse_step_px", self.coarse_step_px, Range{0.0, 10.0}, "px", "a smaller step ends the coarse ones");
     visitor.field("most_steps", self.most_steps, Range{1, 64}, "steps", "in all; source: tracker study 2.9");
-    visitor.field("last_step_px", self.last_step_px, Range{1e-6, 1.0}, "px", "a smaller step ends; source: study 2.9");
+    visitor.field("last_step_px", self.last_step_px, Range{1e-6, 1.0}, "px",
+                  "a smaller step is the last; source: the next one is a tenth of it");
+    visitor.field("settled_px", self.settled_px, Range{1e-6, 10.0}, "px",
+                  "a larger last step means that the start was too far off; source: jerks of the rendered sequences");
     visitor.field("cut_sigmas", self.cut_sigmas, Range{1.0, 100.0}, "robust sigmas",
                   "Tukey weights reach zero here; source: tracker study 2.9 (2 or 4 within 7 %)");
     visitor.field("first_cut_sigmas", self.first_cut_sigmas, Range{1.0, 100.0}, "robust sigmas",
@@ -51,7 +56,8 @@ struct RefinerOptions {
 enum class Freedom { rigid, similarity };
 
 struct Refinement {
-  bool converged = false;  ///< false: too few pixels, or the pixels do not fix the pose
+  bool valid = false;    ///< false: too few pixels, or the pixels do not fix the pose
+  bool settled = false;  ///< the last step was small; false: the start was too far off
   retina::Pose2 map_T_frame;
   double ncc = 0.0;    ///< normalised correlation of frame and template
   double sigma = 0.0;  ///< robust deviation of frame and template, contrast units
@@ -84,6 +90,9 @@ class Refiner {
                         const retina::Pose2& pose, std::size_t stride);
   double robustSigma() const;
   NormalEquations accumulate(std::size_t begin, std::size_t end, double cut) const;
+  static std::optional<Eigen::Vector4d> solve(NormalEquations normal, Freedom freedom, double scale_weight,
+                                              double scale_offset);
+  void judge(const AlignmentTemplate& pixels, Freedom freedom, Refinement& result);
   double correlation(double cut) const;
   Eigen::Matrix4d covarianceOf(const AlignmentTemplate& pixels, const NormalEquations& all, double cut,
                                Freedom freedom) const;

@@ -35,7 +35,7 @@ bool ScaleEvidence::update(const MaskedContrast& frame, const Mosaic& mosaic, co
     collectTemplate(mosaic, frame, map_T_frame, seen_);
   }
   const Refinement found = refiner_.refine(frame.contrast, seen_, map_T_frame, Freedom::similarity);
-  if (!found.converged || found.ncc < kLeastNcc) return false;
+  if (!found.valid || found.ncc < kLeastNcc) return false;
   const double change = found.map_T_frame.scale - 1.0;
   const bool significant = std::abs(change) > options_.least_change &&
                            std::abs(change) > options_.sigmas * std::sqrt(found.covariance(3, 3));

@@ -52,19 +52,19 @@ Refinement SmearModel::refine(const Mosaic& mosaic, const MaskedContrast& frame,
     from.y += ahead * share * whole.y();
     const Refinement found = quick_.refine(frame.contrast, smeared_, from, freedom, scale_sigma);
     // The robust deviation, not the correlation: blooms and burns leave streaks that outvote the vessels.
-    if (!found.converged || (best.converged && found.sigma >= best.sigma)) return;
+    if (!found.valid || (best.valid && found.sigma >= best.sigma)) return;
     best = found;
     best_share = share;
   };
   for (const double share : {0.3, 0.5, 0.7, 1.0, 1.5, 2.0}) attempt(share, 0.0);
-  if (!best.converged) return best;
+  if (!best.valid) return best;
   // A sharp template may have caught one end of the smear: look from both.
   for (const double ahead : {-0.3, 0.3}) attempt(best_share, ahead);
   const double centre = best_share;
   for (const double factor : {0.85, 1.15}) attempt(centre * factor, 0.0);
   smear(sharp, best_share * whole, 1, smeared_);
   const Refinement refined = full_.refine(frame.contrast, smeared_, best.map_T_frame, freedom, scale_sigma);
-  return refined.converged ? refined : best;
+  return refined.valid ? refined : best;
 }
 
 void SmearModel::smear(const AlignmentTemplate& sharp, const Eigen::Vector2d& extent, std::size_t stride,

@@ -31,7 +31,7 @@ struct LocalizerOptions {
   double least_visible = 0.10;
   int least_red = 30;
   double least_ncc = 0.4;
-  double wide_ncc_share = 0.65;
+  double ncc_share = 0.65;
   int wide_cells = 40;
   int wide_steps = 8;
   int wide_points = 250;
@@ -47,8 +47,8 @@ struct LocalizerOptions {
                   "with a lower median red the frame is a blackout; source: tracker study 2.3");
     visitor.field("least_ncc", self.least_ncc, Range{0.0, 1.0}, "",
                   "correlation of frame and mosaic below which a pose is wrong; source: tracker study 2.10");
-    visitor.field("wide_ncc_share", self.wide_ncc_share, Range{0.0, 1.0}, "of the running mean",
-                  "what the wide searches must reach, or they go on; source: tracker study 2.10");
+    visitor.field("ncc_share", self.ncc_share, Range{0.0, 1.0}, "of the running mean",
+                  "a candidate below it is kept, but the search goes on; source: tracker study 2.10");
     visitor.field("wide_cells", self.wide_cells, Range{4, 500}, "cells",
                   "half window of the second search; source: tracker study 2.8");
     visitor.field("wide_steps", self.wide_steps, Range{1, 90}, "angular steps of one cell at the corner",
