@@ -66,12 +66,11 @@ std::string damageInJpeg(const Bytes& bytes)
 {
   std::size_t at = 2;
   while (at + 2 <= bytes.size()) {
-    if (bytes[at] != 0xFF) {
+    const std::uint8_t marker = bytes[at + 1];
+    if (bytes[at] != 0xFF || marker == 0xFF) {
       ++at;
-    } else if (const std::uint8_t marker = bytes[at + 1]; marker == 0xD9) {
+    } else if (marker == 0xD9) {
       return "";  // end of image
-    } else if (marker == 0xFF) {
-      ++at;
     } else if (standsAlone(marker)) {
       at += 2;
     } else if (at + 4 <= bytes.size()) {

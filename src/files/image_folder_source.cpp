@@ -44,7 +44,7 @@ void ImageFolderSource::checkAll()
       throw FileError(fmt::format("{}: is {}, but {} is {}; images of one size and type are wanted", path,
                                   describe(image), paths_.front(), describe(first)));
     }
-    if (converted.empty() && !note.empty()) converted = path + ": " + note + ", as in all images like it";
+    if (converted.empty() && !note.empty()) converted = fmt::format("{}: {}, as in all images like it", path, note);
     all_grey = all_grey && hasEqualChannels(image);
   }
   grey_ = all_grey && isLit(first);

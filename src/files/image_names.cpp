@@ -23,7 +23,7 @@ std::string number(const std::string& text, std::size_t& at)
   std::size_t end = at;
   while (end < text.size() && isDigit(text[end])) ++end;
   while (at + 1 < end && text[at] == '0') ++at;
-  const std::string digits = text.substr(at, end - at);
+  std::string digits = text.substr(at, end - at);
   at = end;
   return digits;
 }

@@ -120,7 +120,7 @@ void OutputFolder::writePng(const std::string& name, const cv::Mat& image) const
 
 void OutputFolder::checkSpace() const
 {
-  constexpr std::uintmax_t kLeast = 64 * 1024;
+  constexpr std::uintmax_t kLeast = 65536;
   std::error_code error;
   const fs::space_info space = fs::space(staging_, error);
   if (!error && space.available < kLeast) fail(folder_, "no space left on its disk");
