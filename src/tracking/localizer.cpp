@@ -18,6 +18,7 @@ struct Localizer::View {
 
 Localizer::Localizer(const TrackerOptions& options)
     : options_(options.localizer),
+      uncertainty_(options.uncertainty),
       cell_px_(options.occupancy.cell_px),
       matcher_(options.matcher),
       relocalizer_(options.relocalizer),
@@ -111,7 +112,8 @@ bool Localizer::confirm(const View& view, const retina::Pose2& start, double sco
   if (!refined.valid || refined.ncc < options_.least_ncc) return false;
   if (refined.ncc > best_.ncc) {
     best_ = {retina::Reason::none,
-             {refined.map_T_frame, refined.covariance.topLeftCorner<3, 3>()},
+             {refined.map_T_frame, honestCovariance(refined.covariance.topLeftCorner<3, 3>(), refined.ncc,
+                                                    refined.map_T_frame, view.frame.size(), uncertainty_)},
              score,
              refined.ncc,
              refined.sigma};

@@ -52,6 +52,7 @@ class Localizer {
   bool matchAnywhere(const View& view);
 
   LocalizerOptions options_;
+  PoseUncertaintyOptions uncertainty_;
   double cell_px_;
   ScanMatcher matcher_;
   Relocalizer relocalizer_;

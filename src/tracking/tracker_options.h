@@ -13,6 +13,7 @@
 #include "eyeslam/tracking/occupancy_map.h"
 #include "eyeslam/tracking/point_selector.h"
 #include "eyeslam/tracking/pose_filter.h"
+#include "eyeslam/tracking/pose_uncertainty.h"
 #include "eyeslam/tracking/published_map.h"
 #include "eyeslam/tracking/refiner.h"
 #include "eyeslam/tracking/relocalizer.h"
@@ -75,6 +76,7 @@ struct TrackerOptions {
   DenseSearchOptions dense;
   RefinerOptions refiner;
   SmearModelOptions smear;
+  PoseUncertaintyOptions uncertainty;
   PoseFilterOptions filter;
   OccupancyMapOptions occupancy;
   MosaicOptions mosaic;
@@ -101,6 +103,7 @@ struct TrackerOptions {
     visitor.group("dense", self.dense);
     visitor.group("refiner", self.refiner);
     visitor.group("smear", self.smear);
+    visitor.group("uncertainty", self.uncertainty);
     visitor.group("filter", self.filter);
     visitor.group("occupancy", self.occupancy);
     visitor.group("mosaic", self.mosaic);
