@@ -8,12 +8,8 @@ namespace eyeslam::tracking {
 
 namespace {
 
-constexpr int kBorder_px = 6;
 constexpr double kFarthest_px = 3.0;
 constexpr double kLeastNcc = 0.4;
-constexpr int kCluster_px = 64;
-constexpr int kBlockWidth = Mosaic::kBlockWidth, kBlockHeight = Mosaic::kBlockHeight;
-constexpr float kLeastGradient = 0.006F * Frame::kContrastUnit;  // per px; source: tracker study 2.14
 
 }  // namespace
 
@@ -32,9 +28,6 @@ void Anchor::start(const MaskedContrast& frame)
   smeared_ = false;
   goal_ = now_ = {};
   next_ = options_.first_frame;
-  // Touched now, so that the frame of the first registration does not pay for the pages.
-  mean_ = cv::Mat_<std::int16_t>::zeros(contrast_.size());
-  count_ = cv::Mat_<std::uint8_t>::zeros(contrast_.size());
 }
 
 bool Anchor::isBetterStart(const MaskedContrast& frame, std::int64_t frames_since_start) const
@@ -91,70 +84,18 @@ Refinement Anchor::registerSmeared(const Mosaic& mosaic, const retina::Pose2& fr
   return smear_model_.refine(mosaic, picture(), template_, from, motion_, Freedom::rigid, 1.0);
 }
 
-// The strongest pixel of each block of the mosaic without frame 0's share: M' = (k M - n0) / (k - 1).
+// The mosaic's template pixels without frame 0's share: M' = (k M - n0) / (k - 1).
 void Anchor::collect(const Mosaic& mosaic)
 {
-  mosaic.read({0, 0, contrast_.cols, contrast_.rows}, mean_, count_);
-  for (int y = 0; y < mean_.rows; ++y) {
-    for (int x = 0; x < mean_.cols; ++x) {
-      const int k = count_(y, x);
-      const bool shared = hidden_(y / Frame::kCell, x / Frame::kCell) == OcclusionMask::kVisible;
-      if (!shared) continue;
-      if (k < 2) {
-        count_(y, x) = 0;
-      } else {
-        mean_(y, x) = static_cast<std::int16_t>((k * mean_(y, x) - contrast_(y, x)) / (k - 1));
-      }
-    }
+  collectTemplate(mosaic, picture(), goal_, template_);
+  const Eigen::Vector2d centre = mosaic.centre();
+  for (std::size_t i = 0; i < template_.size(); ++i) {
+    const int x = static_cast<int>(std::lround(static_cast<double>(template_.x[i]) + centre.x()));
+    const int y = static_cast<int>(std::lround(static_cast<double>(template_.y[i]) + centre.y()));
+    if (x < 0 || y < 0 || x >= contrast_.cols || y >= contrast_.rows || !picture().isVisible(x, y)) continue;
+    const auto k = static_cast<float>(mosaic.count(x, y));
+    if (k >= 2.0F) template_.value[i] = (k * template_.value[i] - static_cast<float>(contrast_(y, x))) / (k - 1.0F);
   }
-  template_.clear();
-  for (int cy = 0; cy < mean_.rows; cy += kCluster_px) {
-    for (int cx = 0; cx < mean_.cols; cx += kCluster_px) {
-      const std::size_t begin = template_.size();
-      for (int by = cy; by < std::min(cy + kCluster_px, mean_.rows); by += kBlockHeight) {
-        for (int bx = cx; bx < std::min(cx + kCluster_px, mean_.cols); bx += kBlockWidth) pushStrongest(bx, by);
-      }
-      if (template_.size() > begin) template_.cluster_begins.push_back(begin);
-    }
-  }
-}
-
-void Anchor::pushStrongest(int bx, int by)
-{
-  float most = kLeastGradient * kLeastGradient, best_gx = 0.0F, best_gy = 0.0F;
-  cv::Point best(-1, -1);
-  const int right = std::min(bx + kBlockWidth, mean_.cols - kBorder_px);
-  const int bottom = std::min(by + kBlockHeight, mean_.rows - kBorder_px);
-  for (int y = std::max(by, kBorder_px); y < bottom; ++y) {
-    for (int x = std::max(bx, kBorder_px); x < right; ++x) {
-      const std::int16_t *above = mean_[y - 1] + x, *here = mean_[y] + x, *below = mean_[y + 1] + x;
-      const float gx =
-          0.125F * static_cast<float>(above[1] - above[-1] + 2 * (here[1] - here[-1]) + below[1] - below[-1]);
-      const float gy =
-          0.125F * static_cast<float>(below[-1] - above[-1] + 2 * (below[0] - above[0]) + below[1] - above[1]);
-      const float strength = gx * gx + gy * gy;
-      if (strength <= most || !isKnown(x, y)) continue;
-      most = strength;
-      best = {x, y};
-      best_gx = gx;
-      best_gy = gy;
-    }
-  }
-  if (best.x < 0) return;
-  const float centre_x = static_cast<float>(mean_.cols - 1) / 2.0F,
-              centre_y = static_cast<float>(mean_.rows - 1) / 2.0F;
-  template_.push(static_cast<float>(best.x) - centre_x, static_cast<float>(best.y) - centre_y,
-                 static_cast<float>(mean_(best)), best_gx, best_gy);
-}
-
-bool Anchor::isKnown(int x, int y) const
-{
-  if (hidden_(y / Frame::kCell, x / Frame::kCell) != OcclusionMask::kVisible) return false;
-  for (int v = y - 1; v <= y + 1; ++v) {
-    const std::uint8_t* row = count_[v] + x;
-    if (row[-1] == 0 || row[0] == 0 || row[1] == 0) return false;
-  }
-  return true;
 }
 
 }  // namespace eyeslam::tracking

@@ -67,8 +67,6 @@ class Anchor {
   Refinement registerSharp(const Mosaic& mosaic);
   Refinement registerSmeared(const Mosaic& mosaic, const retina::Pose2& from);
   void collect(const Mosaic& mosaic);
-  void pushStrongest(int bx, int by);
-  bool isKnown(int x, int y) const;
 
   AnchorOptions options_;
   Refiner refiner_;
@@ -78,8 +76,6 @@ class Anchor {
   cv::Mat_<std::uint8_t> hidden_;
   double sharpness_ = 0.0;
   bool smeared_ = false;
-  cv::Mat_<std::int16_t> mean_;
-  cv::Mat_<std::uint8_t> count_;
   AlignmentTemplate template_;
   Eigen::Vector2d motion_ = Eigen::Vector2d::Zero();  // of the view in frame 0, map px per frame
   retina::Pose2 goal_, now_;

@@ -103,7 +103,8 @@ bool Localizer::confirm(const View& view, const retina::Pose2& start, double sco
   Refinement refined = refiner_.refine(view.frame.contrast, template_, start, view.freedom, options_.scale_sigma);
   const Eigen::Vector2d motion = refined.map_T_frame.translation() - view.last_pose.translation();
   const SmearModelOptions& smear = smear_model_.options();
-  if (motion.norm() > smear.least_motion_px && refined.ncc < smear.ncc_share * running_ncc_) {
+  const bool plausible = refined.ncc > smear.least_ncc && refined.ncc < smear.ncc_share * running_ncc_;
+  if (plausible && motion.norm() > smear.least_motion_px) {
     const Refinement smeared =
         smear_model_.refine(view.mosaic, view.frame, template_, refined.valid ? refined.map_T_frame : start, motion,
                             view.freedom, options_.scale_sigma);

@@ -27,6 +27,15 @@ void clip(double start, double step, double lowest, double highest, double& from
   to = std::min(to, std::max(a, b));
 }
 
+// Rounds without a library call, which would keep the loop from vector units.
+EYESLAM_VECTOR_KERNEL void roundRow(const float* values, int count, std::int16_t* rounded)
+{
+  constexpr int kShift = 1 << 15;  // makes every value positive, where truncation rounds down
+  for (int i = 0; i < count; ++i) {
+    rounded[i] = static_cast<std::int16_t>(static_cast<int>(values[i] + (kShift + 0.5F)) - kShift);
+  }
+}
+
 // Squared gradients of one row of the strip by 3x3 smoothed central differences; 0 next to a pixel never seen.
 EYESLAM_VECTOR_KERNEL void gradientRow(const float* above, const float* middle, const float* below,
                                        const std::uint8_t* counts, int stride, float* gx, float* gy, float* strength)
@@ -132,11 +141,11 @@ void Mosaic::blendRow(const MaskedContrast& frame, const retina::Pose2& frame_T_
 void Mosaic::chooseTemplate(const cv::Rect& box, int period, int phase)
 {
   for (int block = floorDivide(box.y, kBlockHeight); block <= floorDivide(box.br().y - 1, kBlockHeight); ++block) {
-    // Only blocks that took a row this time.
+    // Only blocks whose last row had its turn: the four rows of a block are blended in four frames running.
     const int first = block * kBlockHeight;
     const int offset = phase - (first - floorDivide(first, period) * period);
-    const bool touched = period <= kBlockHeight || (offset >= 0 && offset < kBlockHeight);
-    if (!touched) continue;
+    const bool complete = period <= kBlockHeight || offset == kBlockHeight - 1;
+    if (!complete) continue;
     const int ty = floorDivide(first, kTile);
     for (int tx = floorDivide(box.x, kTile); tx <= floorDivide(box.br().x - 1, kTile); ++tx) {
       if (Tile* tile = tiles_.find(tx, ty)) chooseInBlockRow(*tile, tx, ty, (first - ty * kTile) / kBlockHeight);
@@ -197,6 +206,13 @@ void Mosaic::chooseInBlockRow(Tile& tile, int tx, int ty, int block_row)
   std::copy(best.begin(), best.end(), tile.pixels.begin() + block_row * kBlocksAcross);
 }
 
+int Mosaic::count(int x, int y) const
+{
+  const int tx = floorDivide(x, kTile), ty = floorDivide(y, kTile);
+  const Tile* tile = tiles_.find(tx, ty);
+  return tile ? tile->count[static_cast<std::size_t>((y - ty * kTile) * kTile + x - tx * kTile)] : 0;
+}
+
 cv::Rect Mosaic::bounds() const
 {
   return {cv::Point(tiles_.firstX() * kTile, tiles_.firstY() * kTile),
@@ -215,11 +231,9 @@ void Mosaic::read(const cv::Rect& region, cv::Mat_<std::int16_t>& mean, cv::Mat_
       if (!tile) continue;
       const cv::Rect part = region & cv::Rect(tx * kTile, ty * kTile, kTile, kTile);
       for (int y = part.y; y < part.br().y; ++y) {
-        for (int x = part.x; x < part.br().x; ++x) {
-          const auto at = static_cast<std::size_t>((y - ty * kTile) * kTile + x - tx * kTile);
-          mean(y - region.y, x - region.x) = static_cast<std::int16_t>(std::lround(tile->mean[at]));
-          count(y - region.y, x - region.x) = tile->count[at];
-        }
+        const auto at = static_cast<std::size_t>((y - ty * kTile) * kTile + part.x - tx * kTile);
+        roundRow(tile->mean.data() + at, part.width, mean[y - region.y] + part.x - region.x);
+        std::copy_n(tile->count.data() + at, part.width, count[y - region.y] + part.x - region.x);
       }
     }
   }

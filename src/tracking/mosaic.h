@@ -83,6 +83,8 @@ class Mosaic {
   /// Image centre of frame 0, mosaic px: pixel (i, j) has centred map px (i, j) - centre().
   const Eigen::Vector2d& centre() const { return centre_; }
   const TileGrid<Tile>& tiles() const { return tiles_; }
+  /// Samples of one pixel (mosaic px), 0 where never seen.
+  int count(int x, int y) const;
   /// Bounding box of all tiles, mosaic px.
   cv::Rect bounds() const;
   /// Copies a region (mosaic px): mean contrast, rounded, and number of samples; 0 where never seen.

@@ -25,8 +25,9 @@ struct ScaleEvidenceOptions {
     using retina::Range;
     visitor.field("period", self.period, Range{1, 1000}, "frames",
                   "the scale is measured once in so many; source: tracker study 2.12");
-    visitor.field("least_change", self.least_change, Range{0.0, 1.0}, "",
-                  "smaller differences from 1 are warp and weak texture; source: rigid rendered sequences stay under 0.0056");
+    visitor.field(
+        "least_change", self.least_change, Range{0.0, 1.0}, "",
+        "smaller differences from 1 are warp and weak texture; source: rigid rendered sequences stay under 0.0056");
     visitor.field("sigmas", self.sigmas, Range{0.0, 100.0}, "standard deviations",
                   "and as many of the measurement's own; source: a change that counts shows at 30 and more");
     visitor.field("in_a_row", self.in_a_row, Range{1, 100}, "measurements", "of one sign; source: tracker study 2.12");

@@ -52,11 +52,16 @@ Refinement SmearModel::refine(const Mosaic& mosaic, const MaskedContrast& frame,
     from.y += ahead * share * whole.y();
     const Refinement found = quick_.refine(frame.contrast, smeared_, from, freedom, scale_sigma);
     // The robust deviation, not the correlation: blooms and burns leave streaks that outvote the vessels.
-    if (!found.valid || (best.valid && found.sigma >= best.sigma)) return;
+    if (!found.valid || (best.valid && found.sigma >= best.sigma)) return false;
     best = found;
     best_share = share;
+    return true;
   };
-  for (const double share : {0.3, 0.5, 0.7, 1.0, 1.5, 2.0}) attempt(share, 0.0);
+  int worse = 0;
+  for (const double share : {0.3, 0.5, 0.7, 1.0, 1.5, 2.0}) {
+    worse = attempt(share, 0.0) || !best.valid ? 0 : worse + 1;
+    if (worse == 2) break;  // the deviation has one minimum: longer smears are worse still
+  }
   if (!best.valid) return best;
   // A sharp template may have caught one end of the smear: look from both.
   for (const double ahead : {-0.3, 0.3}) attempt(best_share, ahead);

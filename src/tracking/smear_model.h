@@ -15,6 +15,7 @@ namespace eyeslam::tracking {
 struct SmearModelOptions {
   double least_motion_px = 4.0;
   double ncc_share = 0.95;
+  double least_ncc = 0.15;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor& visitor)
@@ -24,6 +25,8 @@ struct SmearModelOptions {
                   "a slower view is not smeared; source: tracker study 2.11");
     visitor.field("ncc_share", self.ncc_share, Range{0.0, 1.0}, "of the running mean",
                   "a frame that correlates better is not smeared; source: tracker study 2.11");
+    visitor.field("least_ncc", self.least_ncc, Range{0.0, 1.0}, "",
+                  "below it the sharp template is at a wrong place; source: saccades, wrong to 0.11, right from 0.21");
   }
 };
 
