@@ -34,12 +34,12 @@ install_packages() {
   fi
 }
 
-# The build's progress is one line that is written over on a terminal, and nothing elsewhere.
+# build_release PROGRAM...: these only, for the tests take most of a whole build.
 build_release() {
   local log=build/release.log
   mkdir -p build
-  echo "building (log: $log; the first time takes some minutes)"
-  if ! { cmake --preset release && cmake --build --preset release; } >"$log" 2>&1; then
+  echo "building $* (log: $log; the first time takes some minutes)"
+  if ! { cmake --preset release && cmake --build --preset release --target "$@"; } >"$log" 2>&1; then
     echo "the build failed; the end of $log:" >&2
     tail -n 30 "$log" >&2
     return 1
