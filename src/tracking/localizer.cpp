@@ -41,6 +41,7 @@ void Localizer::prepare(const OccupancyMap& occupancy) { relocalizer_.prepare(oc
 void Localizer::restart()
 {
   relocalizer_.restart();
+  lost_frames_ = 0;
   running_ncc_ = 0.0;
 }
 
@@ -51,10 +52,18 @@ Localization Localizer::localize(const MaskedContrast& frame, const ScanPoints& 
   const View view{frame, points, occupancy, mosaic, predicted, last_pose, freedom};
   best_ = {};
   best_.reason = retina::Reason::poor_match;
-  const bool confirmed = matchNear(view) || matchWide(view) || matchDense(view) || matchAnywhere(view);
+  // Every search must fit into a frame: the windows around the prediction are searched once, when the view is lost; a
+  // smeared frame has too few points for the whole map, a sharp one needs no dense search.
+  const bool sharp = static_cast<int>(points.size()) >= options_.sharp_points;
+  const bool just_now = lost_frames_ == 0;
+  const bool confirmed =
+      matchNear(view) || (just_now && matchWide(view)) || (sharp ? matchAnywhere(view) : matchDense(view));
   if (confirmed || best_.reason == retina::Reason::none) {
+    lost_frames_ = 0;
     relocalizer_.restart();
     running_ncc_ = running_ncc_ > 0.0 ? 0.9 * running_ncc_ + 0.1 * best_.ncc : best_.ncc;
+  } else {
+    ++lost_frames_;
   }
   return best_;
 }
@@ -89,9 +98,10 @@ bool Localizer::matchDense(const View& view)
 bool Localizer::matchAnywhere(const View& view)
 {
   const MatchResult match = relocalizer_.search(view.points, view.occupancy, view.predicted.map_T_frame);
-  if (match.reason == retina::Reason::searching && best_.reason != retina::Reason::none) best_.reason = match.reason;
-  if (match.reason != retina::Reason::none) return false;
-  return confirm(view, match.map_T_frame, match.score);
+  if (match.reason == retina::Reason::none) return confirm(view, match.map_T_frame, match.score);
+  // The last search knows best why there is no place, unless an earlier one left a place that will do.
+  if (best_.reason != retina::Reason::none) best_.reason = match.reason;
+  return false;
 }
 
 // Refines a candidate, smeared where the view moved fast, and compares it with the mosaic; keeps it when it is the best

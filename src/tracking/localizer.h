@@ -63,6 +63,7 @@ class Localizer {
   ScanPoints few_;
   Localization best_;
   double running_ncc_ = 0.0;
+  int lost_frames_ = 0;  // refused here since the last confirmed one
 };
 
 }  // namespace eyeslam::tracking

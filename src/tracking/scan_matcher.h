@@ -18,8 +18,8 @@ struct ScanMatcherOptions {
   double window_sigmas = 3.0;
   int least_cells = 4;
   int least_steps = 2;
-  int most_cells = 60;
-  int most_steps = 30;
+  int most_cells = 24;
+  int most_steps = 8;
   double temperature = 0.05;
   double ambiguous_ratio = 0.95;
   double valley_ratio = 0.8;

@@ -36,6 +36,7 @@ struct LocalizerOptions {
   int wide_cells = 40;
   int wide_steps = 8;
   int wide_points = 250;
+  int sharp_points = 100;
   double scale_sigma = 0.002;
 
   template <class Self, class Visitor>
@@ -55,6 +56,10 @@ struct LocalizerOptions {
     visitor.field("wide_steps", self.wide_steps, Range{1, 90}, "angular steps of one cell at the corner",
                   "half window of the second search; source: tracker study 2.8");
     visitor.field("wide_points", self.wide_points, Range{30, 5000}, "points", "source: tracker study 2.8");
+    visitor.field(
+        "sharp_points", self.sharp_points, Range{0, 5000}, "points",
+        "with fewer the frame is smeared, and the dense search replaces that of the whole map; source: rendered "
+        "saccades, smeared frames have up to 40 points, sharp ones 400 and more");
     visitor.field("scale_sigma", self.scale_sigma, Range{1e-5, 1.0}, "",
                   "how far the scale may differ from the predicted, once it is free; source: tracker study 2.12");
   }
