@@ -8,7 +8,7 @@ namespace eyeslam::tracking {
 
 namespace {
 
-constexpr double kFarthest_px = 3.0;
+constexpr double kFarthest_px = 3.0, kFarthestSmeared_px = 16.0;
 constexpr double kLeastNcc = 0.4;
 
 }  // namespace
@@ -69,7 +69,8 @@ void Anchor::registerStart(const Mosaic& mosaic)
   const Refinement found = smeared_ ? registerSmeared(mosaic, goal_) : registerSharp(mosaic);
   const double moved = (found.map_T_frame.translation() - goal_.translation()).norm();
   // The last registration is nearly right: a result far off is an error of this one.
-  if (found.valid && found.ncc >= kLeastNcc && moved < kFarthest_px) goal_ = found.map_T_frame;
+  if (found.valid && found.ncc >= kLeastNcc && moved < (smeared_ ? kFarthestSmeared_px : kFarthest_px))
+    goal_ = found.map_T_frame;
 }
 
 Refinement Anchor::registerSharp(const Mosaic& mosaic)
