@@ -22,12 +22,11 @@ class Flattener {
   void add(const YAML::Node& group, const std::string& prefix, int depth)
   {
     if (depth > kDeepestGroup) fail(group, fmt::format("'{}' is nested too deeply", prefix));
-    std::set<std::string> seen;
     for (const auto& entry : group) {
       if (!entry.first.IsScalar()) fail(entry.first, "a key must be a word");
       const std::string key = prefix + entry.first.Scalar();
-      // yaml-cpp keeps both and would look up the first without a word.
-      if (!seen.insert(key).second) fail(entry.first, fmt::format("key '{}' stands twice; keep one", key));
+      // yaml-cpp keeps both and would look up the first without a word; "a.b" may also stand beside b in the group a.
+      if (!seen_.insert(key).second) fail(entry.first, fmt::format("key '{}' stands twice; keep one", key));
       addEntry(entry.second, key, depth);
     }
   }
@@ -51,6 +50,7 @@ class Flattener {
   }
 
   std::string path_;
+  std::set<std::string> seen_;  // keys with their groups
   std::vector<Assignment> assignments_;
 };
 

@@ -73,6 +73,7 @@ TEST_F(Yaml, RefusesAKeyThatStandsTwice)
 {
   EXPECT_THAT(refusal("gain: 1\nkind: grey\ngain: 2\n"), AllOf(HasSubstr(":3:"), HasSubstr("'gain' stands twice")));
   EXPECT_THAT(refusal("lens: {turns: 1}\nlens: {coated: true}\n"), HasSubstr("'lens' stands twice"));
+  EXPECT_THAT(refusal("lens.turns: 1\nlens: {turns: 2}\n"), HasSubstr("'lens.turns' stands twice"));
 }
 
 TEST_F(Yaml, RefusesTheWrongTypeAndSaysTheRightOne)
