@@ -43,6 +43,7 @@ std::string withoutTrailingSlash(std::string path)
 OutputFolder::OutputFolder(const std::string& path, std::vector<std::string> owned)
     : folder_(fs::absolute(withoutTrailingSlash(path)).lexically_normal()), owned_(std::move(owned))
 {
+  if (!folder_.has_filename()) folder_ = folder_.parent_path();  // "results/."
   std::error_code error;
   existed_ = fs::exists(folder_, error);
   if (existed_ && !fs::is_directory(folder_)) fail(folder_, "it is a file; a folder is wanted");

@@ -84,9 +84,13 @@ TEST_F(Output, ReplacesItsOwnFilesAndKeepsOthers)
 
 TEST_F(Output, TakesATrailingSlashForNothing)
 {
-  out_ += "/";
-  publish("1", {"run.json"});
-  EXPECT_THAT(namesIn(temporary_.path("")), UnorderedElementsAre("out"));
+  for (const char* ending : {"/", "//", "/.", "/./"}) {
+    fs::remove_all(temporary_.path("out"));
+    out_ = temporary_.path("out") + ending;
+    publish("1", {"run.json"});
+    EXPECT_THAT(namesIn(temporary_.path("")), UnorderedElementsAre("out")) << ending;
+    EXPECT_THAT(namesIn(temporary_.path("out")), UnorderedElementsAre("run.json")) << ending;
+  }
 }
 
 TEST_F(Output, SweepsUpAfterAKilledRun)
