@@ -35,7 +35,7 @@ void ImageFolderSource::checkAll()
 {
   cv::Mat first;
   std::string converted;
-  bool all_grey = true;
+  bool all_grey = true, any_lit = false;
   for (const std::string& path : paths_) {
     std::string note;
     const cv::Mat image = load(path, note);
@@ -46,8 +46,9 @@ void ImageFolderSource::checkAll()
     }
     if (converted.empty() && !note.empty()) converted = fmt::format("{}: {}, as in all images like it", path, note);
     all_grey = all_grey && hasEqualChannels(image);
+    any_lit = any_lit || isLit(image);
   }
-  grey_ = all_grey && isLit(first);
+  grey_ = all_grey && any_lit;
   if (!converted.empty()) notices_.push_back(converted);
   if (grey_) notices_.push_back(paths_.front() + ": all channels are equal; taken as grey");
 }

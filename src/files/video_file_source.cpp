@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <filesystem>
 #include <fstream>
 #include <opencv2/core.hpp>
 #include <string_view>
@@ -14,6 +15,12 @@ namespace eyeslam::files {
 namespace {
 
 constexpr int kProbedFrames = 60;
+
+// FFmpeg takes "2026-11-25T21:30.mp4" for a protocol and its address; a whole path it takes for a file.
+cv::VideoCapture openFile(const std::string& path)
+{
+  return cv::VideoCapture(std::filesystem::absolute(path).string(), cv::CAP_FFMPEG);
+}
 
 bool isMp4(const std::string& path)
 {
@@ -26,7 +33,7 @@ bool isMp4(const std::string& path)
 // The decoder always gives BGR: whether a camera was grey shows in the first frames that are not dark.
 bool showsGrey(const std::string& path)
 {
-  cv::VideoCapture capture(path, cv::CAP_FFMPEG);
+  cv::VideoCapture capture = openFile(path);
   cv::Mat image;
   for (int i = 0; i < kProbedFrames && capture.read(image); ++i) {
     if (isLit(image)) return hasEqualChannels(image);
@@ -39,7 +46,7 @@ bool showsGrey(const std::string& path)
 VideoFileSource::VideoFileSource(const std::string& path, const VideoSourceOptions& options)
     : path_(path),
       options_(options),
-      capture_(path, cv::CAP_FFMPEG),
+      capture_(openFile(path)),
       rate_(capture_.get(cv::CAP_PROP_FPS)),
       count_is_evidence_(isMp4(path)),
       times_(rate_)

@@ -37,8 +37,6 @@ class VideoSource {
   virtual std::optional<std::int64_t> announcedFrames() const = 0;
   /// Nominal frames per second, for the overlay.
   virtual double framesPerSecond() const = 0;
-  /// Whether frames come when they come: a camera.
-  virtual bool isLive() const { return false; }
   /// The files behind the source, for their hash; none for a camera.
   virtual std::vector<std::string> paths() const { return {}; }
   /// What was converted or looks doubtful, one line each; grows while reading.

@@ -119,6 +119,14 @@ TEST_F(Source, TakesColourImagesWithoutColourAsGrey)
   EXPECT_EQ(source->notices().size(), 1U);
 }
 
+TEST_F(Source, JudgesColourByTheImagesThatAreNotDark)
+{
+  cv::imwrite(folder_.path("a.png"), cv::Mat(40, 50, CV_8UC3, cv::Scalar(0, 0, 0)));
+  EXPECT_TRUE(openVideoSource(folder_.path("a.png"), {})->notices().empty());
+  cv::imwrite(folder_.path("b.png"), cv::Mat(40, 50, CV_8UC3, cv::Scalar(80, 80, 80)));
+  EXPECT_EQ(openVideoSource(folder_.path(""), {})->notices().size(), 1U);
+}
+
 TEST_F(Source, FindsABadImageBeforeTheFirstFrame)
 {
   images(3);
