@@ -33,12 +33,15 @@ CLI::Validator within(double lowest, double highest)
       "");
 }
 
+// CLI11 takes a number that does not fit for the largest that does, to which nothing can be added.
+constexpr std::int64_t kLargestFrame = 1000000000000;
+
 CLI::Validator frameNumber()
 {
   return CLI::Validator(
       [](const std::string& text) {
         std::int64_t value = -1;
-        const bool good = CLI::detail::lexical_cast(text, value) && value >= 0;
+        const bool good = CLI::detail::lexical_cast(text, value) && value >= 0 && value <= kLargestFrame;
         return good ? std::string() : text + " is no frame number (0, 1, ...)";
       },
       "");
@@ -105,6 +108,11 @@ void check(const TrackArguments& arguments)
   if (arguments.out.empty()) throw UsageError("--out DIR is missing; name a folder for the results");
   if (std::find(methods.begin(), methods.end(), arguments.method) == methods.end()) {
     throw UsageError(fmt::format("--method {}: there is none; one of {}", arguments.method, fmt::join(methods, ", ")));
+  }
+  std::error_code none;  // they need not be there
+  if (std::filesystem::equivalent(arguments.input, arguments.out, none)) {
+    throw UsageError(
+        fmt::format("--out {}: is INPUT; results there would pass for frames, name another", arguments.out));
   }
   if (arguments.to >= 0 && arguments.to < arguments.from) {
     throw UsageError(fmt::format("--to {} is before --from {}", arguments.to, arguments.from));

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "command_line/clocks.h"
@@ -46,6 +47,17 @@ std::optional<std::int64_t> expectedFrames(const files::VideoSource& source, con
   return count;
 }
 
+void checkThatInputIsKept(const std::vector<std::string>& inputs, const std::string& out)
+{
+  for (const std::string& input : inputs) {
+    for (const std::string& name : kOwnedNames) {
+      std::error_code none;
+      if (!std::filesystem::equivalent(input, std::filesystem::path(out) / name, none)) continue;
+      throw UsageError(fmt::format("--out {}: results would replace the input {}; name another", out, input));
+    }
+  }
+}
+
 Verbosity verbosity(const TrackArguments& arguments) { return arguments.quiet ? Verbosity::quiet : Verbosity::normal; }
 
 }  // namespace
@@ -60,6 +72,7 @@ TrackRun::TrackRun(const TrackArguments& arguments)
       trajectory_(folder_.staged("trajectory.csv"), folder_.final("trajectory.csv")),
       snapshots_(arguments.snapshots.begin(), arguments.snapshots.end())
 {
+  checkThatInputIsKept(source_->paths(), arguments.out);
   addObservers();
 }
 

@@ -189,9 +189,20 @@ class BadCall(TrackCase):
         self.refuse("a.mp4", "--out", self.out, "--from", "9", "--to", "3", named="--to 3")
 
     def test_numbers_that_are_none(self):
-        for option, value in (("--from", "-1"), ("--to", "x"), ("--snapshots", "3,x"), ("--fps", "0"), ("--fps", "nan"),
-                              ("--um-per-px", "-2"), ("--um-per-px", "nan")):
+        for option, value in (("--from", "-1"), ("--to", "x"), ("--to", "9" * 20), ("--snapshots", "3,x"),
+                              ("--fps", "0"), ("--fps", "nan"), ("--um-per-px", "-2"), ("--um-per-px", "nan")):
             self.refuse("a.mp4", "--out", self.out, option, value, named=option)
+
+    def test_results_among_the_frames(self):
+        frames = image_folder(self.path("frames"), 3)
+        self.refuse(frames, "--out", frames + "/.", named="INPUT")
+        self.assertEqual(len(os.listdir(frames)), 3)
+
+    def test_results_in_place_of_the_input(self):
+        os.mkdir(self.path("earlier"))
+        video = retina_video(self.path("earlier/overlay.mp4"), 2)
+        self.refuse(video, "--out", self.path("earlier"), named="overlay.mp4")
+        self.assertEqual(os.listdir(self.path("earlier")), ["overlay.mp4"])
 
     def test_unknown_form_of_the_dump(self):
         self.refuse("--dump-config=xml", named="xml")
