@@ -53,11 +53,13 @@ Localization Localizer::localize(const MaskedContrast& frame, const ScanPoints& 
   best_ = {};
   best_.reason = retina::Reason::poor_match;
   // Every search must fit into a frame: the windows around the prediction are searched once, when the view is lost; a
-  // smeared frame has too few points for the whole map, a sharp one needs no dense search.
+  // smeared frame has too few points for the whole map, a sharp one needs no dense search. Where few points are all
+  // there ever is, the two take turns.
   const bool sharp = static_cast<int>(points.size()) >= options_.sharp_points;
   const bool just_now = lost_frames_ == 0;
+  const bool anywhere = sharp || lost_frames_ % 2 == 1;
   const bool confirmed =
-      matchNear(view) || (just_now && matchWide(view)) || (sharp ? matchAnywhere(view) : matchDense(view));
+      matchNear(view) || (just_now && matchWide(view)) || (anywhere ? matchAnywhere(view) : matchDense(view));
   if (confirmed || best_.reason == retina::Reason::none) {
     lost_frames_ = 0;
     relocalizer_.restart();
@@ -72,7 +74,10 @@ Localization Localizer::localize(const MaskedContrast& frame, const ScanPoints& 
 bool Localizer::matchNear(const View& view)
 {
   const MatchResult match = matcher_.match(view.points, view.occupancy, view.predicted);
-  if (match.reason != retina::Reason::none) return false;
+  if (match.reason != retina::Reason::none) {
+    best_.reason = match.reason;
+    return false;
+  }
   return confirm(view, match.map_T_frame, match.score);
 }
 
