@@ -6,7 +6,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "eyeslam/baselines/contrast_picture.h"
-#include "eyeslam/baselines/full_pixels.h"
+#include "eyeslam/tracking/full_pixels.h"
 
 namespace eyeslam::baselines {
 
@@ -95,7 +95,7 @@ const tracking::TrackResult& FeatureMethod::accept(const Pose2& map_T_frame, int
   map_T_frame_ = map_T_frame;
   result_.tracked = true;
   result_.reason = Reason::none;
-  result_.map_T_frame = inFullPixels(map_T_frame, frame_);
+  result_.map_T_frame = tracking::inFullPixels(map_T_frame, frame_);
   result_.points = inliers;
   result_.score = static_cast<double>(inliers) / static_cast<double>(now_.keypoints.size());
   return result_;

@@ -7,7 +7,7 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "eyeslam/baselines/contrast_picture.h"
-#include "eyeslam/baselines/full_pixels.h"
+#include "eyeslam/tracking/full_pixels.h"
 
 namespace eyeslam::baselines {
 
@@ -97,7 +97,7 @@ const tracking::TrackResult& KltMethod::accept()
 {
   result_.tracked = true;
   result_.reason = Reason::none;
-  result_.map_T_frame = inFullPixels(map_T_frame_, frame_);
+  result_.map_T_frame = tracking::inFullPixels(map_T_frame_, frame_);
   result_.points = static_cast<int>(corners_.size());
   result_.score = static_cast<double>(corners_.size()) / kCorners;
   return result_;

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "eyeslam/baselines/full_pixels.h"
+#include "eyeslam/tracking/full_pixels.h"
 
 namespace eyeslam::baselines {
 
@@ -76,6 +76,8 @@ const tracking::TrackResult& PaperMethod::track(const cv::Mat& image)
 // Z_t: traced, culled, smoothed, at most 500 of them.
 Reason PaperMethod::observe(const cv::Mat& image)
 {
+  traced_.clear();  // a refused frame shows no findings of the one before
+  points_.clear();
   if (const Reason why = frame_.assign(image); why != Reason::none) return why;
   mask_.update(frame_);
   const auto& limits = options_.localizer;
@@ -109,7 +111,7 @@ const tracking::TrackResult& PaperMethod::accept(const PoseEstimate& map_T_frame
   const Eigen::Vector3d unit(frame_.pixelSize().x(), frame_.pixelSize().y(), 1.0);
   result_.tracked = true;
   result_.reason = Reason::none;
-  result_.map_T_frame = inFullPixels(map_T_frame_, frame_);
+  result_.map_T_frame = tracking::inFullPixels(map_T_frame_, frame_);
   result_.covariance = unit.asDiagonal() * map_T_frame.covariance * unit.asDiagonal();
   result_.points = static_cast<int>(points_.size());
   result_.score = score;
@@ -122,6 +124,7 @@ const tracking::TrackResult& PaperMethod::refuse(Reason why)
   result_.tracked = false;
   result_.reason = why;
   result_.points = static_cast<int>(points_.size());
+  result_.score = 0.0;
   return result_;
 }
 

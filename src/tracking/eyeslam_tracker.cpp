@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "eyeslam/tracking/detection.h"
+#include "eyeslam/tracking/full_pixels.h"
 #include "eyeslam/tracking/localizer.h"
 #include "eyeslam/tracking/mosaic_picture.h"
 #include "eyeslam/tracking/track_display.h"
@@ -38,7 +39,6 @@ class EyeSlamTracker::Steps {
   void beginAt(const MaskedContrast& picture, const PoseEstimate& mosaic_T_frame);
   const TrackResult& refuse(Reason why);
   const TrackResult& accept(const PoseEstimate& mosaic_T_frame, double score);
-  Pose2 inFullPixels(const Pose2& map_T_frame) const;
   std::int64_t framesSinceStart() const { return result_.frame - start_frame_; }
 
   TrackerOptions options_;
@@ -153,8 +153,8 @@ const TrackResult& EyeSlamTracker::Steps::refuse(Reason why)
 {
   filter_.coast();
   // Time to prepare the search of the whole map, which a lost view will need.
-  if (why == Reason::blackout) {
-    localizer_.prepare(occupancy_);
+  if (why == Reason::blackout) localizer_.prepare(occupancy_);
+  if (why == Reason::blackout || why == Reason::wrong_size) {  // nothing was detected: no findings of the frame before
     points_.clear();
     chosen_.clear();
     tool_result_ = {};
@@ -172,21 +172,11 @@ const TrackResult& EyeSlamTracker::Steps::accept(const PoseEstimate& mosaic_T_fr
   last_pose_ = mosaic_T_frame.map_T_frame;
   result_.tracked = true;
   result_.reason = Reason::none;
-  result_.map_T_frame = inFullPixels(anchor_.mosaic_T_start().inverse() * last_pose_);
+  result_.map_T_frame = inFullPixels(anchor_.mosaic_T_start().inverse() * last_pose_, frame_);
   result_.covariance = unit.asDiagonal() * mosaic_T_frame.covariance * unit.asDiagonal();
   result_.points = static_cast<int>(chosen_.size());
   result_.score = score;
   return result_;
-}
-
-Pose2 EyeSlamTracker::Steps::inFullPixels(const Pose2& map_T_frame) const
-{
-  // The frame's centre is not the image's where an odd column was dropped; the pose speaks of the image's.
-  const Eigen::Vector2d image_centre((frame_.fullSize().width - 1) / 2.0, (frame_.fullSize().height - 1) / 2.0);
-  const Eigen::Vector2d offset = frame_.centreInImage() - image_centre;
-  const Eigen::Vector2d t =
-      frame_.pixelSize().cwiseProduct(map_T_frame.translation()) + offset - map_T_frame.linear() * offset;
-  return {t.x(), t.y(), map_T_frame.theta, map_T_frame.scale};
 }
 
 void EyeSlamTracker::Steps::updateMap()
@@ -257,6 +247,7 @@ const TrackResult& EyeSlamTracker::initTracking(const cv::Mat& image)
 
 const TrackResult& EyeSlamTracker::track(const vpImage<vpRGBa>& I)
 {
+  if (I.getSize() == 0) return track(cv::Mat());  // refused by size, where the conversion would throw
   // Shares the pixels for the conversion: OpenCV has no const view of a foreign buffer, and this one is only read.
   auto* pixels = const_cast<vpRGBa*>(I.bitmap);
   cv::cvtColor(cv::Mat(static_cast<int>(I.getRows()), static_cast<int>(I.getCols()), CV_8UC4, pixels), steps_->bgr,

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "eyeslam/baselines/full_pixels.h"
+#include "eyeslam/tracking/full_pixels.h"
 
-namespace eyeslam::baselines {
+namespace eyeslam::tracking {
 
-retina::Pose2 inFullPixels(const retina::Pose2& map_T_frame, const tracking::Frame& frame)
+retina::Pose2 inFullPixels(const retina::Pose2& map_T_frame, const Frame& frame)
 {
   const Eigen::Vector2d image_centre((frame.fullSize().width - 1) / 2.0, (frame.fullSize().height - 1) / 2.0);
   const Eigen::Vector2d offset = frame.centreInImage() - image_centre;
@@ -12,4 +12,4 @@ retina::Pose2 inFullPixels(const retina::Pose2& map_T_frame, const tracking::Fra
   return {shift.x(), shift.y(), map_T_frame.theta, map_T_frame.scale};
 }
 
-}  // namespace eyeslam::baselines
+}  // namespace eyeslam::tracking
