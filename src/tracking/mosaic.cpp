@@ -223,8 +223,10 @@ void Mosaic::read(const cv::Rect& region, cv::Mat_<std::int16_t>& mean, cv::Mat_
 {
   mean.create(region.height, region.width);
   count.create(region.height, region.width);
-  mean.setTo(0);
-  count.setTo(0);
+  for (int y = 0; y < region.height; ++y) {  // setTo would allocate
+    std::fill_n(mean[y], region.width, std::int16_t{0});
+    std::fill_n(count[y], region.width, std::uint8_t{0});
+  }
   for (int ty = floorDivide(region.y, kTile); ty <= floorDivide(region.br().y - 1, kTile); ++ty) {
     for (int tx = floorDivide(region.x, kTile); tx <= floorDivide(region.br().x - 1, kTile); ++tx) {
       const Tile* tile = tiles_.find(tx, ty);

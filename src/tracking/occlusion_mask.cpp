@@ -39,8 +39,9 @@ EYESLAM_VECTOR_KERNEL void orRow(const std::uint8_t* row, int count, std::uint8_
 void grow(const cv::Mat_<std::uint8_t>& cells, int radius, cv::Mat_<std::uint8_t>& scratch,
           cv::Mat_<std::uint8_t>& grown)
 {
-  scratch.setTo(0);
-  grown.setTo(0);
+  for (auto* target : {&scratch, &grown}) {  // setTo would allocate
+    for (int y = 0; y < target->rows; ++y) std::fill_n((*target)[y], target->cols, std::uint8_t{0});
+  }
   for (int y = 0; y < cells.rows; ++y) {
     for (int v = std::max(0, y - radius); v <= std::min(cells.rows - 1, y + radius); ++v)
       orRow(cells[v], cells.cols, scratch[y]);

@@ -77,7 +77,7 @@ void RidgeDetector::shrink(const Frame& frame)
 
 void RidgeDetector::respond()
 {
-  response_.setTo(0);
+  for (int y = 0; y < response_.rows; ++y) std::fill_n(response_[y], response_.cols, 0);  // setTo would allocate
   const int count = smooth_.cols - 2 * kMargin;
   for (int y = kMargin; y < smooth_.rows - kMargin; ++y) {
     for (int direction = 0; direction < kDirections; ++direction) {
