@@ -124,7 +124,7 @@ void drawCurves(cv::Mat& figure, cv::Rect area, const Truth& truth, const std::v
                 {"from 6 px", kWide},
                 {"from 10 px", kWidest},
                 {"false positives", kFalse},
-                {"published (human retina)", kTrue}});
+                {"squares: the paper (human retina)", kTrue}});
 }
 
 cv::Mat colouredVerdicts(const cv::Mat_<std::uint8_t>& verdicts)
@@ -159,12 +159,14 @@ void drawMap(cv::Mat& figure, cv::Rect area, const Truth& truth, const JudgedMap
             {place.x, area.y + 20}, 0.5, kInk);
 }
 
-/// First, last and between them evenly by their number.
-std::vector<std::size_t> chosen(std::size_t count)
+/// The first that shows anything (frame 0's map is empty), the last, and between them evenly by their number.
+std::vector<std::size_t> chosen(const std::vector<JudgedMap>& maps)
 {
+  std::size_t first = 0;
+  while (first + 1 < maps.size() && maps[first].score.coverage <= 0.0) ++first;
   std::vector<std::size_t> picks;
-  const std::size_t most = std::min(count, kMaps);
-  for (std::size_t i = 0; i < most; ++i) picks.push_back(most == 1 ? count - 1 : i * (count - 1) / (most - 1));
+  const std::size_t steps = maps.size() - 1 - first, most = std::min(steps + 1, kMaps);
+  for (std::size_t i = 0; i < most; ++i) picks.push_back(most == 1 ? maps.size() - 1 : first + i * steps / (most - 1));
   return picks;
 }
 
@@ -205,7 +207,7 @@ cv::Mat mapFigure(const std::string& name, const Truth& truth, const std::vector
   writeKey(figure, middle + 24);
   // All maps are shown in the frame of what the last one had seen.
   const cv::Rect seen = cv::boundingRect(maps.back().verdicts != 0);
-  const std::vector<std::size_t> picks = chosen(maps.size());
+  const std::vector<std::size_t> picks = chosen(maps);
   const int width = (kFigure.width - 66) / static_cast<int>(picks.size());
   for (std::size_t i = 0; i < picks.size(); ++i) {
     const cv::Rect area(66 + static_cast<int>(i) * width, middle + 34, width - 18, kFigure.height - middle - 50);

@@ -25,7 +25,7 @@ struct FrameOptions {
     visitor.field("scale", self.scale, Range{0.1, 1.0}, "",
                   "processed px per full-resolution px; source: paper, input is resized in half");
     visitor.field("white_level", self.white_level, Range{0.0, 65535.0}, "grey levels",
-                  "brightest value of a 16-bit picture, 0 = the type's; a 12-bit camera has 4095");
+                  "brightest value of a 16-bit picture, 0 = the type's; source: the camera (12 bit: 4095)");
     visitor.field("background_radius_cells", self.background_radius_cells, Range{1, 16}, "cells of 4 px",
                   "half width of the background mean; source: tracker study 2.4 (2 alike, 5 is 7-20 % worse)");
   }

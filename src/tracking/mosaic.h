@@ -30,7 +30,8 @@ struct MosaicOptions {
                   "each row takes a sample once in so many frames; source: tracker study 2.13");
     visitor.field("settled_row_period", self.settled_row_period, Range{1, 64}, "frames",
                   "the same from settled_frame on; source: tracker study 2.13");
-    visitor.field("settled_frame", self.settled_frame, Range{0, 100000}, "frames", "source: tracker study 2.13");
+    visitor.field("settled_frame", self.settled_frame, Range{0, 100000}, "frames",
+                  "where the period changes; source: tracker study 2.13");
     visitor.field("most_samples", self.most_samples, Range{1, 255}, "samples",
                   "length of the running mean; source: tracker study 2.13");
     visitor.field(

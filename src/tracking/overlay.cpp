@@ -164,7 +164,7 @@ void Overlay::drawReprojection(const OverlayScene& scene, cv::Mat panel)
   label(panel, scene.tip.present ? "Map in the frame, instrument" : "Map in the frame");
 }
 
-void Overlay::drawMosaic(const OverlayScene& scene, cv::Mat panel) const
+void Overlay::drawMosaic(const OverlayScene& scene, cv::Mat panel)
 {
   panel.setTo(kGround);
   if (!scene.mosaic.empty()) {
@@ -172,6 +172,8 @@ void Overlay::drawMosaic(const OverlayScene& scene, cv::Mat panel) const
     const cv::Matx23d map_T_mosaic(step, 0.0, scene.mosaic_origin.x, 0.0, step, scene.mosaic_origin.y);
     cv::warpAffine(scene.mosaic, panel, chain(panelFromMap(), map_T_mosaic), panel_, cv::INTER_LINEAR,
                    cv::BORDER_TRANSPARENT);
+    cv::inRange(panel, cv::Scalar(), cv::Scalar(), unseen_);  // the mosaic is black where nothing was seen
+    panel.setTo(kGround, unseen_);
   }
   const cv::Matx23d panel_T_map = panelFromMap();
   for (std::size_t i = 1; i < trail_.size(); ++i) {

@@ -20,8 +20,9 @@ struct OverlayOptions {
   {
     using retina::Range;
     visitor.field("panel_width", self.panel_width, Range{160, 1920}, "px",
-                  "widest panel; frames are shrunk to it, in half at least");
-    visitor.field("trail_frames", self.trail_frames, Range{1, 1e6}, "frames", "how much of the trajectory is drawn");
+                  "widest panel; frames are shrunk to it, in half at least; source: our choice");
+    visitor.field("trail_frames", self.trail_frames, Range{1, 1e6}, "frames",
+                  "how much of the trajectory is drawn; source: our choice, 20 s at 30 Hz");
   }
 };
 
@@ -56,7 +57,7 @@ class Overlay {
   void drawDetections(const OverlayScene& scene, cv::Mat panel) const;
   void drawMap(const OverlayScene& scene, cv::Mat panel);
   void drawReprojection(const OverlayScene& scene, cv::Mat panel);
-  void drawMosaic(const OverlayScene& scene, cv::Mat panel) const;
+  void drawMosaic(const OverlayScene& scene, cv::Mat panel);
   void drawInstrument(const ToolTip& tip, cv::Mat& panel) const;
   void drawOutline(const OverlayScene& scene, cv::Mat& panel) const;
   void writeStatus(const OverlayScene& scene, cv::Mat line) const;
@@ -65,7 +66,7 @@ class Overlay {
   cv::Size frame_, panel_;
   double panel_per_px_ = 1.0;
   cv::Mat small_, canvas_;  // the frame at the panel's size; all panels
-  cv::Mat grid_, warped_, colours_, palette_;
+  cv::Mat grid_, warped_, colours_, palette_, unseen_;
   cv::Rect2d seen_;  // of the map, full px: all views so far
   std::vector<cv::Point2d> trail_;
 };

@@ -32,9 +32,11 @@ struct RefinerOptions {
   static void visit(Self& self, Visitor& visitor)
   {
     using retina::Range;
-    visitor.field("coarse_stride", self.coarse_stride, Range{1, 32}, "pixels", "the first steps use every so manieth");
+    visitor.field("coarse_stride", self.coarse_stride, Range{1, 32}, "pixels",
+                  "the first steps use every so manieth; source: tracker study 2.9");
     visitor.field("coarse_steps", self.coarse_steps, Range{0, 32}, "steps", "on those; source: tracker study 2.9");
-    visitor.field("coarse_step_px", self.coarse_step_px, Range{0.0, 10.0}, "px", "a smaller step ends the coarse ones");
+    visitor.field("coarse_step_px", self.coarse_step_px, Range{0.0, 10.0}, "px",
+                  "a smaller step ends the coarse ones; source: tracker study 2.9");
     visitor.field("most_steps", self.most_steps, Range{1, 64}, "steps", "in all; source: tracker study 2.9");
     visitor.field("last_step_px", self.last_step_px, Range{1e-6, 1.0}, "px",
                   "a smaller step is the last; source: the next one is a tenth of it");
@@ -48,7 +50,8 @@ struct RefinerOptions {
                   "pixels farther off do not count in the correlation; source: saccades of the rendered sequences");
     visitor.field("least_sigma", self.least_sigma, Range{1e-6, 1.0}, "of the background",
                   "robust deviation is never taken smaller; source: tracker study 2.9");
-    visitor.field("least_pixels", self.least_pixels, Range{8, 100000}, "pixels", "fewer give no refinement");
+    visitor.field("least_pixels", self.least_pixels, Range{8, 100000}, "pixels",
+                  "fewer give no refinement; source: our choice, a view has some 3000");
   }
 };
 

@@ -55,7 +55,8 @@ struct LocalizerOptions {
                   "half window of the second search; source: tracker study 2.8");
     visitor.field("wide_steps", self.wide_steps, Range{1, 90}, "angular steps of one cell at the corner",
                   "half window of the second search; source: tracker study 2.8");
-    visitor.field("wide_points", self.wide_points, Range{30, 5000}, "points", "source: tracker study 2.8");
+    visitor.field("wide_points", self.wide_points, Range{30, 5000}, "points",
+                  "of the second search; source: tracker study 2.8");
     visitor.field(
         "sharp_points", self.sharp_points, Range{0, 5000}, "points",
         "with fewer the frame is smeared, and the dense search replaces that of the whole map; source: rendered "
