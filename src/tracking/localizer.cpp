@@ -70,7 +70,7 @@ Localization Localizer::localize(const MaskedContrast& frame, const ScanPoints& 
   return best_;
 }
 
-// Around the prediction. Without a match the prediction itself may still be right: few points, but texture.
+// Around the prediction.
 bool Localizer::matchNear(const View& view)
 {
   const MatchResult match = matcher_.match(view.points, view.occupancy, view.predicted);
