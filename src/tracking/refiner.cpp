@@ -198,7 +198,9 @@ std::optional<Eigen::Vector4d> Refiner::solve(NormalEquations normal, Freedom fr
   }
   const Eigen::LDLT<Eigen::Matrix4d> solver(normal.information);
   const Eigen::Vector4d move = -solver.solve(normal.gradient);
-  if (solver.info() != Eigen::Success || !solver.isPositive() || !move.allFinite()) return std::nullopt;
+  // Without information the solver answers zero and counts the matrix as positive: that would pass for a perfect fit.
+  const bool fixed = solver.vectorD().minCoeff() > 0.0;
+  if (solver.info() != Eigen::Success || !fixed || !move.allFinite()) return std::nullopt;
   return move;
 }
 
