@@ -103,9 +103,13 @@ bool Localizer::matchDense(const View& view)
 bool Localizer::matchAnywhere(const View& view)
 {
   const MatchResult match = relocalizer_.search(view.points, view.occupancy, view.predicted.map_T_frame);
-  if (match.reason == retina::Reason::none) return confirm(view, match.map_T_frame, match.score);
+  // While the search goes on, its best place so far is only a guess, but the mosaic can tell.
+  const bool guess = match.reason == retina::Reason::searching && match.score > 0.0;
+  const bool found = (match.reason == retina::Reason::none || guess) && confirm(view, match.map_T_frame, match.score);
+  if (found) return true;
   // The last search knows best why there is no place, unless an earlier one left a place that will do.
-  if (best_.reason != retina::Reason::none) best_.reason = match.reason;
+  const bool refused = match.reason != retina::Reason::none && best_.reason != retina::Reason::none;
+  if (refused) best_.reason = match.reason;
   return false;
 }
 
