@@ -6,7 +6,14 @@
 #include <cstdlib>
 #include <new>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+// g++ says by macros that a sanitizer is at work, clang by features.
+#if defined(__has_feature)
+#define EYESLAM_HAS_FEATURE(name) __has_feature(name)
+#else
+#define EYESLAM_HAS_FEATURE(name) 0
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || EYESLAM_HAS_FEATURE(address_sanitizer) || \
+    EYESLAM_HAS_FEATURE(thread_sanitizer)
 #define EYESLAM_COUNTS_MALLOC 0
 #else
 #define EYESLAM_COUNTS_MALLOC 1
