@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <cmath>
 #include <ctime>
@@ -87,6 +89,30 @@ TEST(EyeSlamTracker, HardlyAllocatesWhileLost)
     EXPECT_FALSE(tracked);
   }
   EXPECT_LE(frames_that_allocate, 2);  // a list of a search may still grow, once for all
+}
+
+std::size_t memoryInUse()
+{
+  const struct mallinfo2 heap = mallinfo2();
+  return heap.uordblks + heap.hblkhd;
+}
+
+// The published map's slice included, which may allocate, but must give back what it takes.
+TEST(EyeSlamTracker, TakesNoMoreMemoryWithTime)
+{
+  const std::vector<cv::Mat> round = oneRound();
+  EyeSlamTracker tracker;
+  const auto goRound = [&](int rounds) {
+    for (int frame = 0; frame < rounds * kPeriod; ++frame) {
+      tracker.track(round[static_cast<std::size_t>(frame % kPeriod)]);
+      tracker.updateMap();
+    }
+    return memoryInUse();
+  };
+  const std::size_t early = goRound(5);
+  const std::size_t late = goRound(10);
+  constexpr std::size_t kFew_bytes = 4096;  // 600 frames that each kept a number would take more
+  EXPECT_LE(late, early + kFew_bytes);
 }
 
 /// Moves a tracker over the retina, row by row, and back to the start.
