@@ -108,7 +108,7 @@ TEST(EyeSlamTracker, NeverTracksTheDarkAndIsBackInTheFirstVisibleFrame)
   int frame = 0;
   for (; frame < 20; ++frame) tracker.track(view(drift(frame), frame));
   // The eye moves on meanwhile: by nothing, by a jerk, by a large part of the view.
-  for (const cv::Point jump : {cv::Point(0, 0), cv::Point(-60, 30), cv::Point(20, 70)}) {
+  for (const cv::Point jump : {cv::Point(0, 0), cv::Point(-60, 30), cv::Point(20, 70), cv::Point(-100, 0)}) {
     SCOPED_TRACE(jump);
     for (int dark = 0; dark < 15; ++dark) expectRefused(tracker.track(kDark), Reason::blackout);
     expectAt(tracker.track(view(jump, ++frame)), jump, 2.0 * kSubPixel_px);
