@@ -85,7 +85,8 @@ Refinement Anchor::registerSmeared(const Mosaic& mosaic, const retina::Pose2& fr
   return smear_model_.refine(mosaic, picture(), template_, from, motion_, Freedom::rigid, 1.0);
 }
 
-// The mosaic's template pixels without frame 0's share: M' = (k M - n0) / (k - 1).
+// The mosaic's template pixels without frame 0's share: M' = (k M - n0) / (k - 1), and the gradient alike, or the noise
+// of frame 0 would find itself and hold frame 0 where it is.
 void Anchor::collect(const Mosaic& mosaic)
 {
   collectTemplate(mosaic, picture(), goal_, template_);
@@ -93,9 +94,17 @@ void Anchor::collect(const Mosaic& mosaic)
   for (std::size_t i = 0; i < template_.size(); ++i) {
     const int x = static_cast<int>(std::lround(static_cast<double>(template_.x[i]) + centre.x()));
     const int y = static_cast<int>(std::lround(static_cast<double>(template_.y[i]) + centre.y()));
-    if (x < 0 || y < 0 || x >= contrast_.cols || y >= contrast_.rows || !picture().isVisible(x, y)) continue;
+    const bool inside = x > 0 && y > 0 && x < contrast_.cols - 1 && y < contrast_.rows - 1;
+    if (!inside || !picture().isVisible(x, y)) continue;
     const auto k = static_cast<float>(mosaic.count(x, y));
-    if (k >= 2.0F) template_.value[i] = (k * template_.value[i] - static_cast<float>(contrast_(y, x))) / (k - 1.0F);
+    if (k < 2.0F) continue;
+    const std::int16_t *above = contrast_[y - 1] + x, *here = contrast_[y] + x, *below = contrast_[y + 1] + x;
+    const int dx = above[1] - above[-1] + 2 * (here[1] - here[-1]) + below[1] - below[-1];
+    const int dy = below[-1] - above[-1] + 2 * (below[0] - above[0]) + below[1] - above[1];
+    const auto without = [k](float mean, float own) { return (k * mean - own) / (k - 1.0F); };
+    template_.value[i] = without(template_.value[i], static_cast<float>(here[0]));
+    template_.gx[i] = without(template_.gx[i], 0.125F * static_cast<float>(dx));
+    template_.gy[i] = without(template_.gy[i], 0.125F * static_cast<float>(dy));
   }
 }
 

@@ -77,17 +77,19 @@ Eigen::Vector2d Frame::centreInImage() const { return (pixel_size_.array() * (ce
 
 void Frame::allocate(const cv::Mat& image)
 {
+  const double least = static_cast<double>(options_.least_rows) / std::min(image.cols, image.rows);
+  scale_ = std::max(options_.scale, std::min(1.0, least));
   // Half drops an odd last row or column, so that two px are one exactly; other scales stretch by under a pixel.
-  const auto scaled = [&](int side) { return static_cast<int>(std::floor(side * options_.scale + 1e-6)); };
+  const auto scaled = [&](int side) { return static_cast<int>(std::floor(side * scale_ + 1e-6)); };
   const int width = scaled(image.cols);
   const int height = scaled(image.rows);
   if (std::min(width, height) < kSmallestSide) return;
   type_ = image.type();
   channels_ = image.channels();
   full_size_ = image.size();
-  pixel_size_ = options_.scale == 0.5 ? Eigen::Vector2d(2.0, 2.0)
-                                      : Eigen::Vector2d(static_cast<double>(image.cols) / width,
-                                                        static_cast<double>(image.rows) / height);
+  pixel_size_ = scale_ == 0.5 ? Eigen::Vector2d(2.0, 2.0)
+                              : Eigen::Vector2d(static_cast<double>(image.cols) / width,
+                                                static_cast<double>(image.rows) / height);
   double white = image.depth() == CV_8U ? 255.0 : 65535.0;
   if (image.depth() == CV_16U && options_.white_level > 0.0) white = options_.white_level;
   to_ten_bits_ = kTenBits / white;
@@ -113,7 +115,7 @@ void Frame::allocate(const cv::Mat& image)
 void Frame::shrink(const cv::Mat& image)
 {
   const bool bytes = image.depth() == CV_8U;
-  if (options_.scale == 0.5 && bytes) {
+  if (scale_ == 0.5 && bytes) {
     const auto halve = channels_ == 3 ? kernels::halveGreen : kernels::halveGrey;
     for (int y = 0; y < green_.rows; ++y) halve(image.ptr(2 * y), image.ptr(2 * y + 1), green_.cols, green_[y]);
     return;
@@ -121,8 +123,7 @@ void Frame::shrink(const cv::Mat& image)
   // Sixteen bits through the resampling, so that nothing is rounded on the way to ten.
   cv::extractChannel(image, channel_, channels_ == 3 ? 1 : 0);
   channel_.convertTo(wide_, CV_16U, to_ten_bits_ * 64.0);
-  const cv::Rect even(0, 0, options_.scale == 0.5 ? 2 * green_.cols : wide_.cols,
-                      options_.scale == 0.5 ? 2 * green_.rows : wide_.rows);
+  const cv::Rect even(0, 0, scale_ == 0.5 ? 2 * green_.cols : wide_.cols, scale_ == 0.5 ? 2 * green_.rows : wide_.rows);
   cv::resize(wide_(even), green_, green_.size(), 0.0, 0.0, cv::INTER_AREA);
   green_.convertTo(green_, CV_16U, 1.0 / 64.0);
 }

@@ -15,6 +15,7 @@ class OcclusionMask;
 
 struct FrameOptions {
   double scale = 0.5;
+  int least_rows = 96;
   double white_level = 0.0;
   int background_radius_cells = 3;
 
@@ -24,6 +25,8 @@ struct FrameOptions {
     using retina::Range;
     visitor.field("scale", self.scale, Range{0.1, 1.0}, "",
                   "processed px per full-resolution px; source: paper, input is resized in half");
+    visitor.field("least_rows", self.least_rows, Range{32, 10000}, "px",
+                  "pictures are not shrunk below so many; source: sequences shrunk to 128 x 96 are lost at 48 rows");
     visitor.field("white_level", self.white_level, Range{0.0, 65535.0}, "grey levels",
                   "brightest value of a 16-bit picture, 0 = the type's; source: the camera (12 bit: 4095)");
     visitor.field("background_radius_cells", self.background_radius_cells, Range{1, 16}, "cells of 4 px",
@@ -80,6 +83,7 @@ class Frame {
   void estimateBackground(const OcclusionMask& mask);
 
   FrameOptions options_;
+  double scale_ = 0.5;  // the option's, or what keeps the picture large enough
   int type_ = -1;
   int channels_ = 0;
   double to_ten_bits_ = 1.0;    // times a grey level of the image: 0 to 1020

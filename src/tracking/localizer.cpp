@@ -130,7 +130,8 @@ bool Localizer::confirm(const View& view, const retina::Pose2& start, double sco
     if (smeared.valid && smeared.ncc > refined.ncc) refined = smeared;
   }
   if (!refined.valid || refined.ncc < options_.least_ncc) return false;
-  if (refined.ncc > best_.ncc) {
+  const bool confirmed = refined.settled && refined.ncc >= options_.ncc_share * running_ncc_;
+  if (confirmed || refined.ncc > best_.ncc) {
     best_ = {retina::Reason::none,
              {refined.map_T_frame, honestCovariance(refined.covariance.topLeftCorner<3, 3>(), refined.ncc,
                                                     refined.map_T_frame, view.frame.size(), uncertainty_)},
@@ -138,7 +139,7 @@ bool Localizer::confirm(const View& view, const retina::Pose2& start, double sco
              refined.ncc,
              refined.sigma};
   }
-  return refined.settled && refined.ncc >= options_.ncc_share * running_ncc_;
+  return confirmed;
 }
 
 }  // namespace eyeslam::tracking

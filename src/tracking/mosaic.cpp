@@ -141,11 +141,13 @@ void Mosaic::blendRow(const MaskedContrast& frame, const retina::Pose2& frame_T_
 void Mosaic::chooseTemplate(const cv::Rect& box, int period, int phase)
 {
   for (int block = floorDivide(box.y, kBlockHeight); block <= floorDivide(box.br().y - 1, kBlockHeight); ++block) {
-    // Only blocks whose last row had its turn: the four rows of a block are blended in four frames running.
+    // Only blocks that took a row; once the mosaic has settled, only when their last row had its turn: the four rows
+    // of a block are blended in four frames running, and little changes from one to the next.
     const int first = block * kBlockHeight;
     const int offset = phase - (first - floorDivide(first, period) * period);
-    const bool complete = period <= kBlockHeight || offset == kBlockHeight - 1;
-    if (!complete) continue;
+    const int earliest = period >= options_.settled_row_period ? kBlockHeight - 1 : 0;
+    const bool due = period <= kBlockHeight || (offset >= earliest && offset < kBlockHeight);
+    if (!due) continue;
     const int ty = floorDivide(first, kTile);
     for (int tx = floorDivide(box.x, kTile); tx <= floorDivide(box.br().x - 1, kTile); ++tx) {
       if (Tile* tile = tiles_.find(tx, ty)) chooseInBlockRow(*tile, tx, ty, (first - ty * kTile) / kBlockHeight);

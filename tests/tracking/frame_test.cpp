@@ -11,6 +11,14 @@
 namespace eyeslam::tracking {
 namespace {
 
+// The pictures of these tests are small, and no vessel has to be found in them.
+FrameOptions smallPictures()
+{
+  FrameOptions options;
+  options.least_rows = 32;
+  return options;
+}
+
 using retina::Reason;
 
 cv::Mat randomPicture(int width, int height, int type, double highest)
@@ -42,7 +50,7 @@ struct Prepared {
     mask.update(frame);
     frame.normalise(mask);
   }
-  Frame frame;
+  Frame frame(smallPictures());
   OcclusionMask mask;
 };
 
@@ -60,7 +68,7 @@ TEST(Frame, HalvesByTheExactSumOfTwoByTwoGreen)
 {
   // 163 x 125: an odd last column and row are left out; 81 columns end within a vector of the kernel.
   const cv::Mat picture = randomPicture(163, 125, CV_8UC3, 255);
-  Frame frame;
+  Frame frame(smallPictures());
   ASSERT_EQ(frame.assign(picture), Reason::none);
   ASSERT_EQ(frame.green().size(), cv::Size(81, 62));
   const auto green = [&](int x, int y) { return static_cast<int>(picture.at<cv::Vec3b>(y, x)[1]); };
@@ -75,7 +83,7 @@ TEST(Frame, HalvesByTheExactSumOfTwoByTwoGreen)
 
 TEST(Frame, SaysWhereItsCentreLiesInAPictureOfOddSize)
 {
-  Frame frame;
+  Frame frame(smallPictures());
   ASSERT_EQ(frame.assign(randomPicture(163, 125, CV_8UC3, 255)), Reason::none);
   EXPECT_EQ(frame.pixelSize(), Eigen::Vector2d(2.0, 2.0));
   EXPECT_EQ(frame.centre(), Eigen::Vector2d(40.0, 30.5));
@@ -86,7 +94,7 @@ TEST(Frame, SaysWhereItsCentreLiesInAPictureOfOddSize)
 TEST(Frame, TakesGreyAsEveryColour)
 {
   const cv::Mat picture = randomPicture(128, 96, CV_8UC1, 255);
-  Frame frame;
+  Frame frame(smallPictures());
   ASSERT_EQ(frame.assign(picture), Reason::none);
   EXPECT_TRUE(frame.isGrey());
   for (int y = 0; y < frame.height(); ++y) {
@@ -113,7 +121,7 @@ TEST(Frame, ReadsSixteenBitsAsItReadsEight)
 
 TEST(Frame, TakesTheWhiteLevelForWhite)
 {
-  FrameOptions options;
+  FrameOptions options = smallPictures();
   options.white_level = 4095.0;
   Frame frame(options);
   ASSERT_EQ(frame.assign(cv::Mat(96, 128, CV_16UC3, cv::Scalar(2047.5, 4095.0, 1023.75))), Reason::none);
@@ -128,7 +136,7 @@ TEST(Frame, AveragesTheAreaOfEachPixelAtOtherScales)
 {
   const cv::Mat picture = randomPicture(200, 160, CV_8UC3, 255);
   for (const double scale : {1.0, 0.25, 0.2}) {
-    FrameOptions options;
+    FrameOptions options = smallPictures();
     options.scale = scale;
     Frame frame(options);
     ASSERT_EQ(frame.assign(picture), Reason::none);
@@ -147,7 +155,7 @@ TEST(Frame, AveragesTheAreaOfEachPixelAtOtherScales)
 
 TEST(Frame, StretchesByUnderAPixelWhereTheScaleLeavesARest)
 {
-  FrameOptions options;
+  FrameOptions options = smallPictures();
   options.scale = 0.3;
   Frame frame(options);
   ASSERT_EQ(frame.assign(cv::Mat(165, 201, CV_8UC3, cv::Scalar(30, 90, 180))), Reason::none);
@@ -162,7 +170,7 @@ TEST(Frame, StretchesByUnderAPixelWhereTheScaleLeavesARest)
 TEST(Frame, AveragesCells)
 {
   const cv::Mat picture = randomPicture(160, 128, CV_8UC3, 255);
-  Frame frame;
+  Frame frame(smallPictures());
   ASSERT_EQ(frame.assign(picture), Reason::none);
   for (int y = 0; y < 16; ++y) {
     for (int x = 0; x < 20; ++x) {
@@ -231,7 +239,7 @@ TEST(Frame, KeepsWhatIsMaskedOutOfTheBackgroundOfWhatIsVisible)
 
 TEST(Frame, RefusesWhatItCannotUse)
 {
-  Frame frame;
+  Frame frame(smallPictures());
   EXPECT_EQ(frame.assign(cv::Mat()), Reason::wrong_size);
   EXPECT_EQ(frame.assign(cv::Mat(96, 128, CV_32FC3)), Reason::wrong_size);
   EXPECT_EQ(frame.assign(cv::Mat(96, 128, CV_8UC4)), Reason::wrong_size);
@@ -243,4 +251,14 @@ TEST(Frame, RefusesWhatItCannotUse)
 }
 
 }  // namespace
+TEST(Frame, KeepsEnoughRowsOfASmallPicture)
+{
+  Frame frame;
+  ASSERT_EQ(frame.assign(cv::Mat(96, 128, CV_8UC3, cv::Scalar(20, 60, 160))), eyeslam::retina::Reason::none);
+  EXPECT_EQ(frame.height(), 96);
+  Frame larger;
+  ASSERT_EQ(larger.assign(cv::Mat(192, 256, CV_8UC3, cv::Scalar(20, 60, 160))), eyeslam::retina::Reason::none);
+  EXPECT_EQ(larger.height(), 96);
+}
+
 }  // namespace eyeslam::tracking

@@ -168,11 +168,11 @@ TEST(ScanMatcher, LooksThreeSigmaFar)
   support::saturate(map, vessels);
   const ScanPoints points = support::seenFrom({}, vessels, 400, 304, 300, 0.0, 0.0, random);
   PosePrediction predicted;
-  predicted.map_T_frame = {58.0, 0.0, 0.0, 1.0};
-  predicted.covariance = Eigen::Vector3d(20.0 * 20.0, 1.0, 1e-6).asDiagonal();
+  predicted.map_T_frame = {43.0, 0.0, 0.0, 1.0};
+  predicted.covariance = Eigen::Vector3d(15.0 * 15.0, 1.0, 1e-6).asDiagonal();
   EXPECT_NEAR(ScanMatcher().match(points, map, predicted).map_T_frame.x, 0.0, kCell_px);
-  predicted.covariance(0, 0) = 15.0 * 15.0;  // 45 px do not reach
-  EXPECT_GT(ScanMatcher().match(points, map, predicted).map_T_frame.x, 58.0 - 45.0 - kCell_px);
+  predicted.covariance(0, 0) = 10.0 * 10.0;  // 30 px do not reach
+  EXPECT_GT(ScanMatcher().match(points, map, predicted).map_T_frame.x, 43.0 - 30.0 - kCell_px);
 }
 
 TEST(ScanMatcher, GivesOneStraightVesselALargeVarianceAlongIt)
