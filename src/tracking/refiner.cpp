@@ -216,9 +216,11 @@ Refinement Refiner::refine(const cv::Mat_<std::int16_t>& contrast, const Alignme
   retina::Pose2& pose = result.map_T_frame;
   int coarse_left = options_.coarse_steps;
   double moved = 0.0;
+  bool all_pixels = false;  // whether the residuals at hand are of every pixel
   for (int step = 0; step < options_.most_steps; ++step) {
     const bool coarse = coarse_left > 0;
     const int stride = coarse ? options_.coarse_stride : 1;
+    all_pixels = stride == 1;
     computeResiduals(sample, contrast.size(), pixels, pose, static_cast<std::size_t>(stride));
     const double sigma = robustSigma();
     const double cut = (step == 0 ? options_.first_cut_sigmas : options_.cut_sigmas) * sigma;
@@ -232,7 +234,7 @@ Refinement Refiner::refine(const cv::Mat_<std::int16_t>& contrast, const Alignme
     if (!coarse && moved < options_.last_step_px) break;
   }
   // After a small step the residuals at hand serve for what follows.
-  if (moved >= options_.last_step_px) computeResiduals(sample, contrast.size(), pixels, pose, 1);
+  if (!all_pixels || moved >= options_.last_step_px) computeResiduals(sample, contrast.size(), pixels, pose, 1);
   result.settled = moved < options_.settled_px;
   judge(pixels, freedom, result);
   return result;

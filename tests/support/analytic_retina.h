@@ -28,7 +28,8 @@ struct AnalyticView {
   void addNoise(double sigma, unsigned seed)
   {
     std::mt19937 random(seed);
-    std::normal_distribution<double> grain(0.0, sigma * tracking::Frame::kContrastUnit);
+    std::normal_distribution<double> unit(0.0, 1.0);  // scaled, because a deviation of 0 is not allowed
+    const auto grain = [&](std::mt19937& engine) { return sigma * tracking::Frame::kContrastUnit * unit(engine); };
     for (std::int16_t& value : contrast) value = static_cast<std::int16_t>(std::lround(value + grain(random)));
   }
 };
@@ -79,7 +80,8 @@ class AnalyticRetina {
         const double half = 0.5 * wave.vector.dot(extent);
         const double damping = std::abs(half) > 1e-9 ? std::sin(half) / half : 1.0;
         // From pixel to pixel the phase turns by a constant angle.
-        auto turning = std::polar(wave.amplitude * damping, wave.vector.dot(begin) + wave.phase);
+        // Not by std::polar alone: a damping may be negative.
+        auto turning = wave.amplitude * damping * std::polar(1.0, wave.vector.dot(begin) + wave.phase);
         const auto turn = std::polar(1.0, wave.vector.dot(right));
         for (double& value : row) {
           value += turning.imag();

@@ -46,7 +46,8 @@ inline tracking::ScanPoints seenFrom(const retina::Pose2& map_T_frame, const tra
   }
   std::shuffle(inside.begin(), inside.end(), random);
   inside.resize(std::min(inside.size(), static_cast<std::size_t>(most)));
-  std::normal_distribution<float> noise(0.0F, static_cast<float>(noise_px));
+  std::normal_distribution<float> unit(0.0F, 1.0F);  // scaled, because a deviation of 0 is not allowed
+  const auto noise = [&](std::mt19937& engine) { return static_cast<float>(noise_px) * unit(engine); };
   std::uniform_real_distribution<float> share(0.0F, 1.0F), across(-0.5F, 0.5F);
   for (Eigen::Vector2f& point : inside) {
     point += Eigen::Vector2f(noise(random), noise(random));
