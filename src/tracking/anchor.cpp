@@ -90,7 +90,7 @@ Refinement Anchor::registerSmeared(const Mosaic& mosaic, const retina::Pose2& fr
 void Anchor::collect(const Mosaic& mosaic)
 {
   collectTemplate(mosaic, picture(), goal_, template_);
-  const Eigen::Vector2d centre = mosaic.centre();
+  const Eigen::Vector2d& centre = mosaic.centre();
   for (std::size_t i = 0; i < template_.size(); ++i) {
     const int x = static_cast<int>(std::lround(static_cast<double>(template_.x[i]) + centre.x()));
     const int y = static_cast<int>(std::lround(static_cast<double>(template_.y[i]) + centre.y()));

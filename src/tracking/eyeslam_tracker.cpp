@@ -212,7 +212,7 @@ cv::Mat EyeSlamTracker::Steps::drawMosaic(cv::Point2d& origin) const
   origin = {0.0, 0.0};
   if (mosaic_.empty()) return {};
   cv::Point corner;
-  const cv::Mat picture = picture_.draw(mosaic_, corner);
+  cv::Mat picture = picture_.draw(mosaic_, corner);
   // Moved as a whole with frame 0; the turn of some 0.01 deg is left out.
   const Eigen::Vector2d at(corner.x, corner.y);
   const Eigen::Vector2d moved = at + anchor_.mosaic_T_start().inverse().translation();
