@@ -7,7 +7,6 @@
 
 namespace eyeslam::baselines {
 
-using retina::Pose2;
 using retina::Reason;
 using tracking::MatchResult;
 using tracking::PoseEstimate;
@@ -95,7 +94,7 @@ Reason PaperMethod::observe(const cv::Mat& image)
 // B_t around the prediction; where that fails, in as wide a window as the tracker's second one.
 MatchResult PaperMethod::localize(const PosePrediction& predicted)
 {
-  const MatchResult near = matcher_.match(points_, grid_, predicted);
+  MatchResult near = matcher_.match(points_, grid_, predicted);
   if (near.reason == Reason::none) return near;
   tracking::SearchWindow wide;
   wide.centre = predicted.map_T_frame;

@@ -17,8 +17,6 @@
 
 #include "eyeslam/files/file_error.h"
 
-extern char** environ;
-
 namespace eyeslam::files {
 namespace {
 
@@ -26,6 +24,7 @@ namespace {
 pid_t startEncoder(const std::vector<std::string>& arguments, int input)
 {
   std::vector<char*> words;
+  words.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
   posix_spawn_file_actions_t actions;
