@@ -90,6 +90,7 @@ int framesUntilFollowed(const std::vector<TruthPose>& truth, const std::vector<E
 void scoreTime(const std::vector<EstimatedPose>& estimate, PoseScore& score)
 {
   std::vector<double> cpu_ms;
+  cpu_ms.reserve(estimate.size());
   for (const EstimatedPose& pose : estimate) cpu_ms.push_back(pose.cpu_ms);
   score.cpu_ms_median = percentile(cpu_ms, 50.0);
   score.cpu_ms_p99 = percentile(cpu_ms, 99.0);
