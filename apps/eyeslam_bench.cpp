@@ -115,6 +115,8 @@ CLI::App* addMethodCommand(CLI::App& app, const std::string& name, const std::st
 
 }  // namespace
 
+// What may throw before the program runs is a mistake in its list of options, and should end it.
+// NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int argc, char** argv)
 {
   CLI::App app("Compares this tracker, and its parts, with the alternatives; prints Markdown tables.", "eyeslam-bench");
