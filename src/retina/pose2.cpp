@@ -35,9 +35,4 @@ double wrapAngle(double theta)
   return wrapped <= -M_PI ? M_PI : wrapped;
 }
 
-Pose2 scaledPixels(const Pose2& pose, double factor)
-{
-  return {pose.x * factor, pose.y * factor, pose.theta, pose.scale};
-}
-
 }  // namespace eyeslam::retina

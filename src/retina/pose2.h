@@ -30,7 +30,4 @@ struct Pose2 {
 /// The angle wrapped to (-pi, pi]; rad.
 double wrapAngle(double theta);
 
-/// The pose in pixels that are `factor` times smaller (factor 2: half-resolution to full-resolution pixels).
-Pose2 scaledPixels(const Pose2& pose, double factor);
-
 }  // namespace eyeslam::retina

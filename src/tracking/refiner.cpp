@@ -12,7 +12,7 @@ namespace eyeslam::tracking {
 namespace {
 
 constexpr std::size_t kSums = 14;  // ten of the information's upper half, four of the gradient
-constexpr std::size_t kLaneCount = 8;
+constexpr std::size_t kLanes = 8;
 constexpr double kSmallestScale = 0.2, kLargestScale = 5.0;
 constexpr float kOutside = 1e6F;  // residual of a pixel that left the frame: beyond every cut
 
@@ -21,26 +21,26 @@ EYESLAM_VECTOR_KERNEL void accumulateLanes(const float* r, const float* jx, cons
                                            const float* js, std::size_t blocks, float inverse_cut, float* sums)
 {
   for (std::size_t b = 0; b < blocks; ++b) {
-    const std::size_t at = b * kLaneCount;
-    for (std::size_t k = 0; k < kLaneCount; ++k) {
+    const std::size_t at = b * kLanes;
+    for (std::size_t k = 0; k < kLanes; ++k) {
       const float ratio = r[at + k] * inverse_cut;
       const float inside = std::max(0.0F, 1.0F - ratio * ratio);
       const float w = inside * inside;
       const float wx = w * jx[at + k], wy = w * jy[at + k], wt = w * jt[at + k], ws = w * js[at + k];
       sums[k] += wx * jx[at + k];
-      sums[1 * kLaneCount + k] += wx * jy[at + k];
-      sums[2 * kLaneCount + k] += wx * jt[at + k];
-      sums[3 * kLaneCount + k] += wx * js[at + k];
-      sums[4 * kLaneCount + k] += wy * jy[at + k];
-      sums[5 * kLaneCount + k] += wy * jt[at + k];
-      sums[6 * kLaneCount + k] += wy * js[at + k];
-      sums[7 * kLaneCount + k] += wt * jt[at + k];
-      sums[8 * kLaneCount + k] += wt * js[at + k];
-      sums[9 * kLaneCount + k] += ws * js[at + k];
-      sums[10 * kLaneCount + k] += wx * r[at + k];
-      sums[11 * kLaneCount + k] += wy * r[at + k];
-      sums[12 * kLaneCount + k] += wt * r[at + k];
-      sums[13 * kLaneCount + k] += ws * r[at + k];
+      sums[1 * kLanes + k] += wx * jy[at + k];
+      sums[2 * kLanes + k] += wx * jt[at + k];
+      sums[3 * kLanes + k] += wx * js[at + k];
+      sums[4 * kLanes + k] += wy * jy[at + k];
+      sums[5 * kLanes + k] += wy * jt[at + k];
+      sums[6 * kLanes + k] += wy * js[at + k];
+      sums[7 * kLanes + k] += wt * jt[at + k];
+      sums[8 * kLanes + k] += wt * js[at + k];
+      sums[9 * kLanes + k] += ws * js[at + k];
+      sums[10 * kLanes + k] += wx * r[at + k];
+      sums[11 * kLanes + k] += wy * r[at + k];
+      sums[12 * kLanes + k] += wt * r[at + k];
+      sums[13 * kLanes + k] += ws * r[at + k];
     }
   }
 }

@@ -83,7 +83,6 @@ class Refiner {
                     Freedom freedom, double scale_sigma = 1.0);
 
  private:
-  static constexpr std::size_t kLanes = 8;
   struct NormalEquations {
     Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
     Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
