@@ -113,14 +113,8 @@ CLI::App* addMethodCommand(CLI::App& app, const std::string& name, const std::st
   return command;
 }
 
-}  // namespace
-
-// What may throw before the program runs is a mistake in its list of options, and should end it.
-// NOLINTNEXTLINE(bugprone-exception-escape)
-int main(int argc, char** argv)
+std::function<void()> setUp(CLI::App& app, BenchArguments& arguments)
 {
-  CLI::App app("Compares this tracker, and its parts, with the alternatives; prints Markdown tables.", "eyeslam-bench");
-  BenchArguments arguments;
   addStandardOptions(app, kExamples);
   app.require_subcommand(1);
   const CLI::App* by_accuracy =
@@ -128,9 +122,19 @@ int main(int argc, char** argv)
   const CLI::App* by_speed = addMethodCommand(app, "speed", "CPU time of tracking methods a frame", arguments);
   CLI::App* by_detector = addCommand(app, "detect", "vessel detectors against labelled vessels", arguments);
   by_detector->add_option("--period", arguments.period, "looks at one frame in so many")->check(CLI::Range(1, 10000));
-  return runProgram(app, argc, argv, [&] {
+  return [by_accuracy, by_speed, &arguments] {
     if (by_accuracy->parsed()) return accuracy(arguments);
     if (by_speed->parsed()) return speed(arguments);
     detect(arguments);
-  });
+  };
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  BenchArguments arguments;
+  return runProgram("eyeslam-bench",
+                    "Compares this tracker, and its parts, with the alternatives; prints Markdown tables.", argc, argv,
+                    [&arguments](CLI::App& app) { return setUp(app, arguments); });
 }

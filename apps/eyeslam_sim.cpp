@@ -213,18 +213,24 @@ void render(const Arguments& arguments)
     fmt::print(stderr, "eyeslam-sim: interrupted; {} holds the first {} frames\n", arguments.out, done);
 }
 
+void renderOrNameTheRetina(const Arguments& arguments)
+{
+  try {
+    render(arguments);
+  } catch (const std::invalid_argument& error) {
+    throw files::FileError(fmt::format("--retina {}: {}", arguments.retina, error.what()));
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv)
 {
-  CLI::App app("Renders a video of the retina through a surgical microscope, with its exact truth.", "eyeslam-sim");
   Arguments arguments;
-  addOptions(app, arguments);
-  return apps::runProgram(app, argc, argv, [&arguments] {
-    try {
-      render(arguments);
-    } catch (const std::invalid_argument& error) {
-      throw files::FileError(fmt::format("--retina {}: {}", arguments.retina, error.what()));
-    }
-  });
+  return apps::runProgram("eyeslam-sim",
+                          "Renders a video of the retina through a surgical microscope, with its exact truth.", argc,
+                          argv, [&arguments](CLI::App& app) {
+                            addOptions(app, arguments);
+                            return [&arguments] { renderOrNameTheRetina(arguments); };
+                          });
 }

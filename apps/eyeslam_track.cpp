@@ -32,12 +32,14 @@ void dump(const TrackArguments& arguments)
 
 int main(int argc, char** argv)
 {
-  CLI::App app("Maps the vessels of a retina video and says in each frame where the view is.", "eyeslam-track");
   TrackArguments arguments;
-  addOptions(app, arguments);
-  return runProgram(app, argc, argv, [&arguments] {
-    if (!arguments.dump.empty()) return dump(arguments);
-    check(arguments);
-    TrackRun(arguments).run();
-  });
+  return runProgram("eyeslam-track", "Maps the vessels of a retina video and says in each frame where the view is.",
+                    argc, argv, [&arguments](CLI::App& app) {
+                      addOptions(app, arguments);
+                      return [&arguments] {
+                        if (!arguments.dump.empty()) return dump(arguments);
+                        check(arguments);
+                        TrackRun(arguments).run();
+                      };
+                    });
 }

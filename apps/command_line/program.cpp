@@ -5,7 +5,7 @@
 #include <omp.h>
 #include <signal.h>
 
-#include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <opencv2/core.hpp>
 #include <opencv2/core/utils/logger.hpp>
@@ -34,12 +34,25 @@ void useOneThread()
   cv::setNumThreads(1);
 }
 
-int complain(const CLI::App& app, const std::string& what, int status)
+int complain(const char* name, const char* what, int status) noexcept
 {
-  std::string line = what;
-  std::replace(line.begin(), line.end(), '\n', ' ');
-  fmt::print(stderr, "{}: {}\n", app.get_name(), line);
+  std::fprintf(stderr, "%s: ", name);
+  for (const char* letter = what; *letter != 0; ++letter) std::fputc(*letter == '\n' ? ' ' : *letter, stderr);
+  std::fputc('\n', stderr);
   return status;
+}
+
+int parseAndRun(CLI::App& app, int argc, char** argv, const ProgramSetup& setUp)
+{
+  const std::function<void()> run = setUp(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    throw UsageError(fmt::format("{}; {} --help lists all options", error.what(), app.get_name()));
+  }
+  run();
+  return 0;
 }
 
 }  // namespace
@@ -52,24 +65,22 @@ void addStandardOptions(CLI::App& app, const std::string& examples)
   app.footer("Examples:\n" + examples + "\nExit status: 0 done, 1 the work failed, 2 the call was wrong.");
 }
 
-int runProgram(CLI::App& app, int argc, char** argv, const std::function<void()>& run)
+int runProgram(const char* name, const char* about, int argc, char** argv, const ProgramSetup& setUp) noexcept
 {
-  silenceLibraries();
-  useOneThread();
-  signal(SIGXFSZ, SIG_IGN);  // a file too large for the limit is then an error like a full disk
   try {
-    app.parse(argc, argv);
-    run();
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    return complain(app, fmt::format("{}; {} --help lists all options", error.what(), app.get_name()), kWrongCall);
+    silenceLibraries();
+    useOneThread();
+    signal(SIGXFSZ, SIG_IGN);  // a file too large for the limit is then an error like a full disk
+    CLI::App app(about, name);
+    return parseAndRun(app, argc, argv, setUp);
   } catch (const UsageError& error) {
-    return complain(app, error.what(), kWrongCall);
+    return complain(name, error.what(), kWrongCall);
   } catch (const configuration::ConfigurationError& error) {
-    return complain(app, error.what(), kWrongCall);
+    return complain(name, error.what(), kWrongCall);
   } catch (const std::exception& error) {
-    return complain(app, error.what(), kFailed);
+    return complain(name, error.what(), kFailed);
+  } catch (...) {
+    return complain(name, "failed without saying why", kFailed);
   }
 }
 
