@@ -5,7 +5,7 @@
 #include <array>
 #include <cstring>
 
-#include "eyeslam/tracking/vector_kernel.h"
+#include "eyeslam/tracking/cell_growth.h"
 
 namespace eyeslam::tracking {
 
@@ -28,31 +28,6 @@ int medianAboveBlack(const cv::Mat_<std::uint8_t>& cells)
   int level = kBlack;
   for (int below = 0; total > 0 && 2 * below < total; ++level) below += histogram[static_cast<std::size_t>(level) + 1];
   return total > 0 ? level : 0;
-}
-
-EYESLAM_VECTOR_KERNEL void orRow(const std::uint8_t* row, int count, std::uint8_t* bits)
-{
-  for (int i = 0; i < count; ++i) bits[i] = static_cast<std::uint8_t>(bits[i] | row[i]);
-}
-
-// Every cell takes the bits of its (2 radius + 1) square.
-void grow(const cv::Mat_<std::uint8_t>& cells, int radius, cv::Mat_<std::uint8_t>& scratch,
-          cv::Mat_<std::uint8_t>& grown)
-{
-  for (auto* target : {&scratch, &grown}) {  // setTo would allocate
-    for (int y = 0; y < target->rows; ++y) std::fill_n((*target)[y], target->cols, std::uint8_t{0});
-  }
-  for (int y = 0; y < cells.rows; ++y) {
-    for (int v = std::max(0, y - radius); v <= std::min(cells.rows - 1, y + radius); ++v)
-      orRow(cells[v], cells.cols, scratch[y]);
-  }
-  for (int y = 0; y < cells.rows; ++y) {
-    for (int d = -radius; d <= radius; ++d) {
-      const int from = std::max(0, -d);
-      const int count = cells.cols - std::abs(d);
-      if (count > 0) orRow(scratch[y] + from + d, count, grown[y] + from);
-    }
-  }
 }
 
 }  // namespace
@@ -78,7 +53,8 @@ void OcclusionMask::update(const Frame& frame)
       rough_(y, x) = static_cast<std::uint8_t>((dark ? kRim : kVisible) | (bright ? kBright : kVisible));
     }
   }
-  grow(rough_, options_.growth_cells, scratch_, cells_);
+  for (int y = 0; y < cells_.rows; ++y) std::fill_n(cells_[y], cells_.cols, kVisible);  // setTo would allocate
+  growBits(rough_, 0xFF, options_.growth_cells, scratch_, cells_);
   const int visible = static_cast<int>(cells_.total()) - cv::countNonZero(cells_);
   visible_fraction_ = static_cast<double>(visible) / static_cast<double>(cells_.total());
 }

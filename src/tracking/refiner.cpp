@@ -11,38 +11,41 @@ namespace eyeslam::tracking {
 
 namespace {
 
-constexpr std::size_t kSums = 14;  // ten of the information's upper half, four of the gradient
 constexpr std::size_t kLanes = 8;
 constexpr double kSmallestScale = 0.2, kLargestScale = 5.0;
 constexpr float kOutside = 1e6F;  // residual of a pixel that left the frame: beyond every cut
 
 // Weighted sums over lanes; an associative order of our own, since the compiler may not choose one for floats.
-EYESLAM_VECTOR_KERNEL void accumulateLanes(const float* r, const float* jx, const float* jy, const float* jt,
-                                           const float* js, std::size_t blocks, float inverse_cut, float* sums)
+// Sums: the upper triangle of J'WJ row by row, then J'Wr.
+template <int kFreedoms>
+[[gnu::always_inline]] inline void accumulateLanes(const float* r, const float* const (&j)[kFreedoms],
+                                                   std::size_t blocks, float inverse_cut, float* sums)
 {
-  for (std::size_t b = 0; b < blocks; ++b) {
-    const std::size_t at = b * kLanes;
+  for (std::size_t at = 0; at < blocks * kLanes; at += kLanes) {
     for (std::size_t k = 0; k < kLanes; ++k) {
       const float ratio = r[at + k] * inverse_cut;
       const float inside = std::max(0.0F, 1.0F - ratio * ratio);
       const float w = inside * inside;
-      const float wx = w * jx[at + k], wy = w * jy[at + k], wt = w * jt[at + k], ws = w * js[at + k];
-      sums[k] += wx * jx[at + k];
-      sums[1 * kLanes + k] += wx * jy[at + k];
-      sums[2 * kLanes + k] += wx * jt[at + k];
-      sums[3 * kLanes + k] += wx * js[at + k];
-      sums[4 * kLanes + k] += wy * jy[at + k];
-      sums[5 * kLanes + k] += wy * jt[at + k];
-      sums[6 * kLanes + k] += wy * js[at + k];
-      sums[7 * kLanes + k] += wt * jt[at + k];
-      sums[8 * kLanes + k] += wt * js[at + k];
-      sums[9 * kLanes + k] += ws * js[at + k];
-      sums[10 * kLanes + k] += wx * r[at + k];
-      sums[11 * kLanes + k] += wy * r[at + k];
-      sums[12 * kLanes + k] += wt * r[at + k];
-      sums[13 * kLanes + k] += ws * r[at + k];
+      float* sum = sums + k;
+      for (int a = 0; a < kFreedoms; ++a) {
+        const float weighted = w * j[a][at + k];
+        for (int b = a; b < kFreedoms; ++b, sum += kLanes) *sum += weighted * j[b][at + k];
+      }
+      for (int a = 0; a < kFreedoms; ++a, sum += kLanes) *sum += w * j[a][at + k] * r[at + k];
     }
   }
+}
+
+EYESLAM_VECTOR_KERNEL void accumulateRigid(const float* r, const float* const (&j)[3], std::size_t blocks,
+                                           float inverse_cut, float* sums)
+{
+  accumulateLanes<3>(r, j, blocks, inverse_cut, sums);
+}
+
+EYESLAM_VECTOR_KERNEL void accumulateSimilarity(const float* r, const float* const (&j)[4], std::size_t blocks,
+                                                float inverse_cut, float* sums)
+{
+  accumulateLanes<4>(r, j, blocks, inverse_cut, sums);
 }
 
 // Distance that a step moves the pixels at a typical radius.
@@ -109,35 +112,47 @@ double Refiner::robustSigma() const
   return std::max(kNormal * median, options_.least_sigma * Frame::kContrastUnit);
 }
 
-Refiner::NormalEquations Refiner::accumulate(std::size_t begin, std::size_t end, double cut) const
+template <int kFreedoms>
+Refiner::NormalEquations Refiner::accumulateColumns(std::size_t begin, std::size_t end, double cut) const
 {
+  constexpr std::size_t kSums = kFreedoms * (kFreedoms + 1) / 2 + kFreedoms;
+  const std::array<const std::vector<float>*, 4> fields{&jx_, &jy_, &jt_, &js_};
+  const float* columns[kFreedoms];
+  for (std::size_t a = 0; a < kFreedoms; ++a) columns[a] = fields[a]->data() + begin;
   // Whole blocks of lanes, then the rest one by one, so that clusters of any length can be summed.
   std::array<float, kSums * kLanes> sums{};
   const std::size_t blocks = (end - begin) / kLanes;
   const auto inverse_cut = static_cast<float>(1.0 / cut);
-  const auto from = [&](const std::vector<float>& field) { return field.data() + begin; };
-  accumulateLanes(from(residual_), from(jx_), from(jy_), from(jt_), from(js_), blocks, inverse_cut, sums.data());
+  if constexpr (kFreedoms == 3)
+    accumulateRigid(residual_.data() + begin, columns, blocks, inverse_cut, sums.data());
+  else
+    accumulateSimilarity(residual_.data() + begin, columns, blocks, inverse_cut, sums.data());
   std::array<double, kSums> total{};
   for (std::size_t s = 0; s < kSums; ++s) {
     for (std::size_t k = 0; k < kLanes; ++k) total[s] += static_cast<double>(sums[s * kLanes + k]);
   }
-  for (std::size_t i = begin + blocks * kLanes; i < end; ++i) {
-    const double ratio = static_cast<double>(residual_[i]) / cut;
-    const double inside = std::max(0.0, 1.0 - ratio * ratio);
-    const Eigen::Vector4d j(jx_[i], jy_[i], jt_[i], js_[i]);
+  for (std::size_t i = blocks * kLanes; i < end - begin; ++i) {
+    const auto r = static_cast<double>(residual_[begin + i]);
+    const double inside = std::max(0.0, 1.0 - r * r / (cut * cut));
+    const auto weighted = [&](int a) { return inside * inside * static_cast<double>(columns[a][i]); };
     std::size_t s = 0;
-    for (int a = 0; a < 4; ++a) {
-      for (int b = a; b < 4; ++b) total[s++] += inside * inside * j[a] * j[b];
+    for (int a = 0; a < kFreedoms; ++a) {
+      for (int b = a; b < kFreedoms; ++b) total[s++] += weighted(a) * static_cast<double>(columns[b][i]);
     }
-    for (int a = 0; a < 4; ++a) total[s++] += inside * inside * j[a] * static_cast<double>(residual_[i]);
+    for (int a = 0; a < kFreedoms; ++a) total[s++] += weighted(a) * r;
   }
   NormalEquations result;
   std::size_t s = 0;
-  for (int a = 0; a < 4; ++a) {
-    for (int b = a; b < 4; ++b) result.information(a, b) = result.information(b, a) = total[s++];
+  for (int a = 0; a < kFreedoms; ++a) {
+    for (int b = a; b < kFreedoms; ++b) result.information(a, b) = result.information(b, a) = total[s++];
   }
-  for (int a = 0; a < 4; ++a) result.gradient[a] = total[s++];
+  for (int a = 0; a < kFreedoms; ++a) result.gradient[a] = total[s++];
   return result;
+}
+
+Refiner::NormalEquations Refiner::accumulate(std::size_t begin, std::size_t end, double cut, Freedom freedom) const
+{
+  return freedom == Freedom::rigid ? accumulateColumns<3>(begin, end, cut) : accumulateColumns<4>(begin, end, cut);
 }
 
 // Over the pixels that the robust deviation explains: streaks of blooms and the instrument would outvote the vessels.
@@ -168,7 +183,7 @@ Eigen::Matrix4d Refiner::covarianceOf(const AlignmentTemplate& pixels, const Nor
   Eigen::Matrix4d scatter = Eigen::Matrix4d::Zero();
   const std::size_t clusters = pixels.cluster_begins.size();
   for (std::size_t c = 0; c < clusters; ++c) {
-    const Eigen::Vector4d g = accumulate(pixels.cluster_begins[c], pixels.clusterEnd(c), cut).gradient;
+    const Eigen::Vector4d g = accumulate(pixels.cluster_begins[c], pixels.clusterEnd(c), cut, freedom).gradient;
     scatter += g * g.transpose();
   }
   const double freedoms = std::max(1.0, static_cast<double>(clusters) - n);
@@ -191,10 +206,7 @@ std::optional<Eigen::Vector4d> Refiner::solve(NormalEquations normal, Freedom fr
     normal.information(3, 3) += scale_weight;
     normal.gradient[3] += scale_weight * scale_offset;
   } else {
-    normal.information.row(3).setZero();
-    normal.information.col(3).setZero();
-    normal.information(3, 3) = 1.0;
-    normal.gradient[3] = 0.0;
+    normal.information(3, 3) = 1.0;  // nothing was summed for the scale: it stays
   }
   const Eigen::LDLT<Eigen::Matrix4d> solver(normal.information);
   const Eigen::Vector4d move = -solver.solve(normal.gradient);
@@ -225,7 +237,8 @@ Refinement Refiner::refine(const cv::Mat_<std::int16_t>& contrast, const Alignme
     const double sigma = robustSigma();
     const double cut = (step == 0 ? options_.first_cut_sigmas : options_.cut_sigmas) * sigma;
     const double scale_weight = sigma * sigma / (scale_sigma * scale_sigma);
-    const auto move = solve(accumulate(0, residual_.size(), cut), freedom, scale_weight, pose.scale - start.scale);
+    const auto move =
+        solve(accumulate(0, residual_.size(), cut, freedom), freedom, scale_weight, pose.scale - start.scale);
     if (!move) return result;
     pose = {pose.x + (*move)[0], pose.y + (*move)[1], pose.theta + (*move)[2], pose.scale + (*move)[3]};
     if (!(pose.scale > kSmallestScale && pose.scale < kLargestScale)) return result;
@@ -245,7 +258,7 @@ void Refiner::judge(const AlignmentTemplate& pixels, Freedom freedom, Refinement
   result.sigma = robustSigma();
   const double cut = options_.cut_sigmas * result.sigma;
   result.ncc = correlation(options_.ncc_sigmas * result.sigma);
-  result.covariance = covarianceOf(pixels, accumulate(0, residual_.size(), cut), cut, freedom);
+  result.covariance = covarianceOf(pixels, accumulate(0, residual_.size(), cut, freedom), cut, freedom);
   result.valid = result.covariance.allFinite();
 }
 

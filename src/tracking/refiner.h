@@ -91,7 +91,9 @@ class Refiner {
   void computeResiduals(const CubicSampler& sample, const cv::Size& size, const AlignmentTemplate& pixels,
                         const retina::Pose2& pose, std::size_t stride);
   double robustSigma() const;
-  NormalEquations accumulate(std::size_t begin, std::size_t end, double cut) const;
+  NormalEquations accumulate(std::size_t begin, std::size_t end, double cut, Freedom freedom) const;
+  template <int kFreedoms>
+  NormalEquations accumulateColumns(std::size_t begin, std::size_t end, double cut) const;
   static std::optional<Eigen::Vector4d> solve(NormalEquations normal, Freedom freedom, double scale_weight,
                                               double scale_offset);
   void judge(const AlignmentTemplate& pixels, Freedom freedom, Refinement& result);

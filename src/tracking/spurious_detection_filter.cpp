@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/tracking/cell_growth.h"
+#include "eyeslam/tracking/vector_kernel.h"
+
 namespace eyeslam::tracking {
 
 namespace {
@@ -12,25 +15,18 @@ enum Mark : std::uint8_t { kColour = 1, kBloom = 2, kRim = 4, kInstrument = 8 };
 
 using Cells = cv::Mat_<std::uint8_t>;
 
-// Gives the bit to every cell within `radius` cells, along rows and columns, of one that has it.
-void spread(Cells& marks, std::uint8_t bit, int radius, Cells& scratch)
+// What the colour of a cell says, for frames that have one.
+EYESLAM_VECTOR_KERNEL void markColours(const std::uint8_t* red, const std::uint16_t* green, const std::uint8_t* blue,
+                                       int count, float dark, float redness, float whiteness, float median_red,
+                                       std::uint8_t* marks)
 {
-  marks.copyTo(scratch);
-  for (int y = 0; y < marks.rows; ++y) {
-    int last = -1 - radius;
-    for (int x = 0; x < marks.cols; ++x) {
-      if ((marks(y, x) & bit) == 0) continue;
-      for (int u = std::max({0, last + radius + 1, x - radius}); u <= std::min(marks.cols - 1, x + radius); ++u)
-        scratch(y, u) = static_cast<std::uint8_t>(scratch(y, u) | bit);
-      last = x;
-    }
-  }
-  for (int y = 0; y < marks.rows; ++y) {
-    for (int v = std::max(0, y - radius); v <= std::min(marks.rows - 1, y + radius); ++v) {
-      const std::uint8_t* from = scratch[v];
-      std::uint8_t* to = marks[y];
-      for (int x = 0; x < marks.cols; ++x) to[x] = static_cast<std::uint8_t>(to[x] | (from[x] & bit));
-    }
+  for (int i = 0; i < count; ++i) {
+    const auto r = static_cast<float>(red[i]);
+    const float g = static_cast<float>(green[i]) / 4.0F;
+    const auto b = static_cast<float>(blue[i]);
+    const int colour = static_cast<int>(r < dark) | static_cast<int>(r < redness * (r + g + b));
+    const int white = static_cast<int>(std::min(g, b) > whiteness * r) & static_cast<int>(r > median_red);
+    marks[i] = static_cast<std::uint8_t>(colour * kColour | white * kBloom);
   }
 }
 
@@ -75,36 +71,32 @@ SpuriousDetectionFilter::Removed SpuriousDetectionFilter::removeFrom(VesselPoint
 
 void SpuriousDetectionFilter::markCells(const Frame& frame, const OcclusionMask& mask)
 {
-  const Cells& red = frame.cellRed();
-  const Cells& blue = frame.cellBlue();
-  marks_.create(red.rows, red.cols);
-  scratch_.create(red.rows, red.cols);
+  const int columns = frame.cellRed().cols;
+  marks_.create(frame.cellRed().rows, columns);
+  scratch_.create(marks_.rows, columns);
   const auto median_red = static_cast<float>(mask.medianRed());
   const float dark = static_cast<float>(options_.darkest_red) * median_red;
   const auto redness = static_cast<float>(options_.least_redness);
   const auto whiteness = static_cast<float>(options_.bloom_whiteness);
-  for (int y = 0; y < red.rows; ++y) {
-    const std::uint8_t* reds = red[y];
-    const std::uint8_t* blues = blue[y];
-    const std::uint16_t* greens = frame.cellGreen()[y];
+  for (int y = 0; y < marks_.rows; ++y) {
     const std::uint8_t* hidden = mask.cells()[y];
     const std::uint8_t* bright = mask.brightCells()[y];
     std::uint8_t* marks = marks_[y];
-    for (int x = 0; x < red.cols; ++x) {
-      const float r = reds[x];
-      const float g = static_cast<float>(greens[x]) / 4.0F;
-      const float b = blues[x];
-      const bool colour = !frame.isGrey() && (r < dark || r < redness * (r + g + b));
-      const bool white = frame.isGrey() ? bright[x] != 0 : std::min(g, b) > whiteness * r && r > median_red;
-      const bool rim = (hidden[x] & OcclusionMask::kRim) != 0;
-      marks[x] = static_cast<std::uint8_t>((colour ? kColour : 0) | (white ? kBloom : 0) | (rim ? kRim : 0) |
-                                           (bright[x] ? kInstrument : 0));
+    if (frame.isGrey()) {
+      std::transform(bright, bright + columns, marks, [](std::uint8_t is) { return is * kBloom; });
+    } else {
+      markColours(frame.cellRed()[y], frame.cellGreen()[y], frame.cellBlue()[y], columns, dark, redness, whiteness,
+                  median_red, marks);
+    }
+    for (int x = 0; x < columns; ++x) {
+      const int rim = (hidden[x] & OcclusionMask::kRim) != 0 ? kRim : 0;
+      marks[x] = static_cast<std::uint8_t>(marks[x] | rim | bright[x] * kInstrument);
     }
   }
   keepLarge(marks_, kBloom, scratch_);
-  spread(marks_, kBloom, options_.bloom_distance_cells, scratch_);
-  spread(marks_, kRim, options_.rim_distance_cells, scratch_);
-  spread(marks_, kInstrument, options_.instrument_distance_cells, scratch_);
+  growBits(marks_, kBloom, options_.bloom_distance_cells, scratch_, marks_);
+  growBits(marks_, kRim, options_.rim_distance_cells, scratch_, marks_);
+  growBits(marks_, kInstrument, options_.instrument_distance_cells, scratch_, marks_);
 }
 
 // Across the direction to the middle of the bright cells nearby. A vessel that passes under the instrument points at
