@@ -22,6 +22,20 @@ std::string_view word(Reason reason)
       return "blurred";
     case Reason::searching:
       return "searching";
+    case Reason::near_vessel:
+      return "near_vessel";
+    case Reason::near_fovea:
+      return "near_fovea";
+    case Reason::near_disc:
+      return "near_disc";
+    case Reason::in_keep_out:
+      return "in_keep_out";
+    case Reason::not_seen:
+      return "not_seen";
+    case Reason::outside_map:
+      return "outside_map";
+    case Reason::crowded:
+      return "crowded";
   }
   return "unknown";
 }

@@ -13,7 +13,7 @@ ALLOWED = {
     "fixtures": {"retina"},
     "messaging": {"retina"},
     "baselines": {"retina", "tracking"},
-    "files": {"retina", "tracking", "fixtures"},
+    "files": {"retina", "configuration", "tracking", "fixtures"},
     "servo": {"retina", "fixtures", "messaging"},
     "simulation": {"retina", "messaging"},
     "trials": None,
