@@ -9,6 +9,7 @@
 #include "eyeslam/retina/options.h"
 #include "eyeslam/retina/pose2.h"
 #include "eyeslam/simulation/random.h"
+#include "eyeslam/simulation/view_motion.h"
 
 namespace eyeslam::simulation {
 
@@ -76,16 +77,16 @@ EyeMotionOptions eyeMotionOptions(const std::string& name);
 
 /// The pose of the view as a function of time, map_T_frame in frame px (contracts, section 1), the identity at t = 0.
 /// A continuous function: a renderer may ask for any instant within an exposure. Repeatable to the byte per seed.
-class EyeMotion {
+/// For videos in which no hand acts on the eye. Where one does, at 1 kHz and in metres, `RetinaMotion` is the model.
+class EyeMotion : public ViewMotion {
  public:
   /// @param px_scale  width of the view / 800 px, times further magnification
   EyeMotion(const EyeMotionOptions& options, double px_scale, double duration_s, std::uint64_t seed);
 
-  retina::Pose2 at(double t_s) const;
+  retina::Pose2 at(double t_s) const override;
   /// Adds a jump of `length_px` towards `angle` (rad) at an instant after the start.
   void addJump(double t_s, double length_px, double angle);
-  /// Six coefficients (x^2, xy, y^2 of the map's x, then of its y; 1/px) of the warp that is added to the pose.
-  std::array<double, 6> warpAt(double t_s) const;
+  std::array<double, 6> warpAt(double t_s) const override;
 
  private:
   struct Wave {

@@ -40,7 +40,7 @@ Microscope::Microscope(const MicroscopeOptions& options, const View& view, cv::M
       picture_(view.size, CV_32FC4)
 {}
 
-RenderedFrame Microscope::expose(int frame, const EyeMotion& motion)
+RenderedFrame Microscope::expose(int frame, const ViewMotion& motion)
 {
   RenderedFrame result;
   result.frame = frame;
@@ -57,7 +57,7 @@ RenderedFrame Microscope::expose(int frame, const EyeMotion& motion)
 }
 
 // The mean over the exposure along the true motion, its middle at the frame's time.
-void Microscope::exposeRetina(double t, const EyeMotion& motion)
+void Microscope::exposeRetina(double t, const ViewMotion& motion)
 {
   const double exposure = optics_.exposure_ms * 1e-3;
   const double moved = travel(motion.at(t - exposure / 2), motion.at(t), view_.size) +

@@ -5,12 +5,12 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "eyeslam/simulation/eye_motion.h"
 #include "eyeslam/simulation/illumination.h"
 #include "eyeslam/simulation/instrument.h"
 #include "eyeslam/simulation/laser_burns.h"
 #include "eyeslam/simulation/sensor.h"
 #include "eyeslam/simulation/specular_blooms.h"
+#include "eyeslam/simulation/view_motion.h"
 
 namespace eyeslam::simulation {
 
@@ -87,11 +87,11 @@ class Microscope {
              std::uint64_t seed);
 
   /// The frame whose exposure is centred at frame / fps. Call with growing numbers: burns stay.
-  RenderedFrame expose(int frame, const EyeMotion& motion);
+  RenderedFrame expose(int frame, const ViewMotion& motion);
   const Illumination& illumination() const { return illumination_; }
 
  private:
-  void exposeRetina(double t_s, const EyeMotion& motion);
+  void exposeRetina(double t_s, const ViewMotion& motion);
   void defocus(double t_s);
   void develop(double t_s, const InstrumentPose& tool, RenderedFrame& result);
   void fire(RenderedFrame& result);

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "eyeslam/simulation/eye_motion.h"
 #include "eyeslam/simulation/retina_sampler.h"
 
 namespace eyeslam::simulation {
