@@ -25,6 +25,44 @@ enum class Reason : std::int16_t {
   not_seen = 44,     ///< or a place seen in too few frames to know that there is no vessel
   outside_map = 45,  ///< or the end of the map
   crowded = 46,      ///< nearer to another target than the pattern's spacing
+  not_finite = 109,  ///< NaN or infinity where a number is needed
+  // Registration between camera and manipulator
+  not_registered = 110,          ///< too few tips seen yet
+  registration_residual = 111,   ///< tips lie too far from the fit
+  registration_uncertain = 112,  ///< the tips seen do not fix it well enough
+  registration_drift = 113,      ///< the newest tips lie all on one side
+  registration_scale = 114,      ///< its um per px differs from the declared one
+  outlier = 115,                 ///< too far from what is expected
+  tip_at_rest = 116,             ///< brings nothing new
+  surface_unknown = 117,         ///< the swept points lie on no plane
+  // Servo: inputs and steps of the 1 kHz loop
+  no_state = 90,          ///< no state of the manipulator has come yet
+  state_late = 91,        ///< a state not younger than the last one, or from the future
+  state_not_finite = 92,  ///< a state with a number that is none
+  state_stale = 93,       ///< the newest state is too old
+  no_pose = 94,           ///< the retina has not been seen yet
+  pose_late = 95,         ///< a pose not younger than the last one, from the future, or older than the history kept
+  pose_not_finite = 96,   ///< a pose with a number that is none
+  pose_stale = 97,        ///< the newest pose is too old
+  pose_jumped = 98,       ///< the pose was taken, but as a jump: its speed was forgotten
+  tip_late = 99,          ///< a tip seen not later than the last one, or outside the history kept
+  tip_not_finite = 100,   ///< a tip seen with a number that is none
+  tip_far = 101,          ///< the tip was seen too far from where the registration puts it
+  goal_not_finite = 102,  ///< a goal with a number that is none
+  cycle_late = 103,       ///< a cycle whose time does not follow the last one's
+  // Messages
+  unauthenticated = 60,  ///< no tag of a holder of the key for this channel
+  wrong_type = 61,       ///< another type than the channel's
+  wrong_length = 62,     ///< too short, too long, or a count in it is
+  wrong_session = 63,    ///< not from the sender first heard; a human decides on another
+  replayed = 64,         ///< its number was there before, or is too old to tell
+  out_of_order = 65,     ///< overtaken by a later one
+  expired = 66,          ///< too long under way to be obeyed
+  clock_stepped = 67,    ///< the sender's clock jumped against the receiver's
+  clock_differs = 68,    ///< a first message whose sender's time is not the receiver's
+  not_finite = 69,       ///< NaN or infinity in a message
+  out_of_range = 70,     ///< a value that the field cannot have
+  internal_error = 71,   ///< an exception in the receiving program
 };
 
 /// The word of a reason, as in `trajectory.csv`; empty for `none`.
