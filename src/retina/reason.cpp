@@ -100,8 +100,6 @@ std::string_view word(Reason reason)
       return "clock_stepped";
     case Reason::clock_differs:
       return "clock_differs";
-    case Reason::not_finite:
-      return "not_finite";
     case Reason::out_of_range:
       return "out_of_range";
     case Reason::internal_error:

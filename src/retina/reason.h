@@ -25,7 +25,6 @@ enum class Reason : std::int16_t {
   not_seen = 44,     ///< or a place seen in too few frames to know that there is no vessel
   outside_map = 45,  ///< or the end of the map
   crowded = 46,      ///< nearer to another target than the pattern's spacing
-  not_finite = 109,  ///< NaN or infinity where a number is needed
   // Registration between camera and manipulator
   not_registered = 110,          ///< too few tips seen yet
   registration_residual = 111,   ///< tips lie too far from the fit

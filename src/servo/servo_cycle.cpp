@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eyeslam/servo/servo_cycle.h"
+
+#include <limits>
+
+#include "eyeslam/servo/loop_time.h"
+
+namespace eyeslam::servo {
+
+using retina::Reason;
+
+namespace {
+
+constexpr double kMilli = 1e-3;
+
+}  // namespace
+
+ServoCycle::ServoCycle(const ServoCycleOptions& options, const ViewPlacement& placement)
+    : options_(options),
+      placement_(placement),
+      view_T_manipulator_(placement.manipulator_T_view.inverse()),
+      hand_(options.hand),
+      retina_(options.retina),
+      trim_(options.trim, placement.centre),
+      integral_(options.integral),
+      limiter_(options.limits),
+      lead_(microseconds(options.lead_ms * kMilli)),
+      null_at_controller_(options.null_at == "controller")
+{
+  outlook_.reason = Reason::no_state;
+}
+
+void ServoCycle::setLead(double lead_s) noexcept { lead_ = microseconds(lead_s); }
+
+Eigen::Vector3d ServoCycle::toView(const Eigen::Vector3d& manipulator) const noexcept
+{
+  Eigen::Vector3d view = view_T_manipulator_ * manipulator;
+  if (options_.trims) view.head<2>() = trim_.toSeen(view.head<2>());
+  return view;
+}
+
+Eigen::Vector3d ServoCycle::toManipulator(const Eigen::Vector3d& view) const noexcept
+{
+  Eigen::Vector3d measured = view;
+  if (options_.trims) measured.head<2>() = trim_.toMeasured(view.head<2>());
+  return placement_.manipulator_T_view * measured;
+}
+
+Eigen::Vector3d ServoCycle::nullAt(std::int64_t utime) const noexcept
+{
+  return options_.predicts_null ? hand_.at(utime) : state_->null;
+}
+
+void ServoCycle::take(const ManipulatorState& state) noexcept
+{
+  if (!state.tip.allFinite() || !state.null.allFinite()) return refusals_.count(Reason::state_not_finite);
+  if (state.utime > now_) return refusals_.count(Reason::state_late);
+  const Reason refused = hand_.correct(state.utime, state.null);
+  refusals_.count(refused);
+  if (refused != Reason::none) return;
+  if (state.port) refusals_.count(retina_.observePort(state.utime, *state.port));
+  refusals_.count(trim_.observe(state.utime, (view_T_manipulator_ * state.tip).head<2>()));
+  if (state_ && goals_.covers(state.utime) && !command_.saturated)
+    integral_.update(goals_.at(state.utime) - state.tip, seconds(state.utime - state_->utime));
+  state_ = state;
+}
+
+void ServoCycle::take(const SeenTip& tip) noexcept
+{
+  if (options_.trims) refusals_.count(trim_.correct(tip));
+}
+
+Reason ServoCycle::whatIsMissing(std::int64_t now) const noexcept
+{
+  if (!state_) return Reason::no_state;
+  if (seconds(now - state_->utime) > options_.state_limit_ms * kMilli) return Reason::state_stale;
+  if (!retina_.isReady()) return Reason::no_pose;
+  if (seconds(now - retina_.utime()) > options_.pose_limit_ms * kMilli) return Reason::pose_stale;
+  return Reason::none;
+}
+
+const Outlook& ServoCycle::observe(const CycleInput& input) noexcept
+{
+  if (started_ && input.now <= now_) {
+    refusals_.count(Reason::cycle_late);
+    outlook_.step_s = 0.0;
+    return outlook_;
+  }
+  outlook_.step_s = now_ == 0 ? 0.0 : seconds(input.now - now_);
+  now_ = input.now;
+  if (input.state) take(*input.state);
+  if (input.pose) refusals_.count(retina_.correct(*input.pose, now_));
+  if (input.tip) take(*input.tip);
+  outlook_.utime = now_ + lead_;
+  outlook_.reason = whatIsMissing(now_);
+  outlook_.prediction = retina_.at(outlook_.utime);
+  outlook_.retina = {placement_.centre, outlook_.prediction.view_T_retina};
+  if (state_) {
+    outlook_.state_age_s = seconds(now_ - state_->utime);
+    outlook_.null_retina = outlook_.retina.toRetina(toView(nullAt(outlook_.utime)));
+  }
+  return outlook_;
+}
+
+const ServoCommand& ServoCycle::command(const Eigen::Vector3d& goal_retina) noexcept
+{
+  command_.reason = outlook_.reason;
+  if (command_.reason == Reason::none && !goal_retina.allFinite()) command_.reason = Reason::goal_not_finite;
+  refusals_.count(command_.reason);
+  if (command_.reason == Reason::no_state || command_.reason == Reason::state_stale) return command_;
+  if (!started_) limiter_.standAt(state_->tip);
+  started_ = true;
+  const bool known = command_.reason == Reason::none;
+  const Eigen::Vector3d nowhere = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  command_.goal = limiter_.goal(known ? toManipulator(outlook_.retina.toView(goal_retina)) : nowhere, outlook_.step_s);
+  if (goals_.empty() || outlook_.utime > goals_.utime(0)) goals_.push(outlook_.utime, command_.goal);
+  const Eigen::Vector3d deflection = command_.goal + integral_.correction() - nullAt(outlook_.utime);
+  command_.deflection = limiter_.deflection(deflection, outlook_.step_s);
+  command_.saturated = limiter_.isSaturated();
+  // The controller subtracts the null that it measures itself. What it is expected to measure is added, so that only
+  // the surprise since this state reaches the tip: fresher than any state that came by message.
+  command_.position = null_at_controller_ ? Eigen::Vector3d(command_.deflection + nullAt(now_)) : command_.deflection;
+  return command_;
+}
+
+}  // namespace eyeslam::servo
