@@ -22,6 +22,36 @@ std::string_view word(Reason reason)
       return "blurred";
     case Reason::searching:
       return "searching";
+    case Reason::input_not_finite:
+      return "input_not_finite";
+    case Reason::bad_time_step:
+      return "bad_time_step";
+    case Reason::retina_lost:
+      return "retina_lost";
+    case Reason::map_changed:
+      return "map_changed";
+    case Reason::no_vessel:
+      return "no_vessel";
+    case Reason::vessel_gone:
+      return "vessel_gone";
+    case Reason::vessel_end:
+      return "vessel_end";
+    case Reason::branch_changed:
+      return "branch_changed";
+    case Reason::map_updated:
+      return "map_updated";
+    case Reason::too_far:
+      return "too_far";
+    case Reason::engaging:
+      return "engaging";
+    case Reason::keep_out:
+      return "keep_out";
+    case Reason::inside_keep_out:
+      return "inside_keep_out";
+    case Reason::speed_limited:
+      return "speed_limited";
+    case Reason::out_of_reach:
+      return "out_of_reach";
     case Reason::near_vessel:
       return "near_vessel";
     case Reason::near_fovea:

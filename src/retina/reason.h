@@ -17,6 +17,22 @@ enum class Reason : std::int16_t {
   poor_match = 5,      ///< nothing in the map fits
   blurred = 6,         ///< too smeared to start a map from
   searching = 7,       ///< lost; the search of the whole map goes on in the next frame
+  // Fixtures: what stands between the hand and its goal
+  input_not_finite = 20,  ///< an input was not a finite, plausible number, or a pose not rigid
+  bad_time_step = 21,     ///< the time since the last cycle was not positive
+  retina_lost = 22,       ///< where the retina is, is not known
+  map_changed = 23,       ///< the pose belongs to another map than the fixtures
+  no_vessel = 24,         ///< none near enough to follow
+  vessel_gone = 25,       ///< the one that was followed is not in the newer map
+  vessel_end = 26,        ///< held at a free end
+  branch_changed = 27,    ///< on the way to another vessel that does not meet the last one
+  map_updated = 28,       ///< on the way to where the newer map has the vessel
+  too_far = 29,           ///< the hand has left the vessel
+  engaging = 30,          ///< on the way to a fixture that has just come into force
+  keep_out = 31,          ///< stopped or turned aside by a region that must not be entered
+  inside_keep_out = 32,   ///< such a region came over the goal, which leaves it
+  speed_limited = 33,     ///< the goal lags behind what is wanted
+  out_of_reach = 34,      ///< what is wanted is farther from the null than the manipulator reaches
   // Burn planning: why a target must not be burnt
   near_vessel = 40,  ///< margin and localization error reach a vessel
   near_fovea = 41,   ///< or the zone around the fovea
