@@ -15,7 +15,7 @@ constexpr int kSampling = 3;  // frame px, along a line of the grid
 constexpr int kBin = 4;       // of the histograms of levels, 1 / Frame::kContrastUnit
 constexpr int kBins = 512;
 constexpr double kMedianOfDifferences = 0.954;  // of two normal samples, in sigma: 0.6745 sqrt 2
-constexpr std::size_t kSeeds = 4096;
+constexpr std::size_t kSeeds = 4096;  // tried; twice as many are collected at most
 constexpr int kOwnSteps = 8;         // a trace may touch what it claimed so few steps ago
 constexpr double kUsualSteps = 8.0;  // what is usual follows a vessel that tapers, over so many steps
 constexpr int kNarrowestClaim = 2;
@@ -54,7 +54,7 @@ void setDirections(std::size_t first, VesselPoints& points)
 VesselTracer::VesselTracer(const VesselTracerOptions& options)
     : options_(options), kernels_(options.kernels), levels_seen_(kBins), differences_(kBins)
 {
-  seeds_.reserve(kSeeds);
+  seeds_.reserve(2 * kSeeds);
 }
 
 void VesselTracer::detect(const Frame& frame, const OcclusionMask& mask, VesselPoints& points)
@@ -133,9 +133,21 @@ void VesselTracer::findSeeds(const cv::Mat_<std::int16_t>& plane, const Occlusio
     for (int x = 1; x < plane.cols - 1; ++x) consider(plane[y] + x, 1, x, y, mask);
   for (int y = 1; y < plane.rows - 1; ++y)
     for (int x = first; x < plane.cols; x += options_.grid_pitch_px) consider(plane[y] + x, row_step, x, y, mask);
-  std::sort(seeds_.begin(), seeds_.end(), [](const Seed& a, const Seed& b) {
-    return a.depth != b.depth ? a.depth > b.depth : (a.y != b.y ? a.y < b.y : a.x < b.x);
-  });
+  keepStrongest();
+  std::sort(seeds_.begin(), seeds_.end(), isStronger);
+}
+
+// Of the whole view, not the first ones: a large picture has more minima than can be tried.
+void VesselTracer::keepStrongest()
+{
+  if (seeds_.size() <= kSeeds) return;
+  std::nth_element(seeds_.begin(), seeds_.begin() + static_cast<std::ptrdiff_t>(kSeeds), seeds_.end(), isStronger);
+  seeds_.resize(kSeeds);
+}
+
+bool VesselTracer::isStronger(const Seed& a, const Seed& b)
+{
+  return a.depth != b.depth ? a.depth > b.depth : (a.y != b.y ? a.y < b.y : a.x < b.x);
 }
 
 void VesselTracer::consider(const std::int16_t* at, std::ptrdiff_t step, int x, int y, const OcclusionMask& mask)
@@ -143,7 +155,8 @@ void VesselTracer::consider(const std::int16_t* at, std::ptrdiff_t step, int x, 
   if (at[0] > at[-step] || at[0] > at[step]) return;
   const Levels& levels = levelsAt(x, y);
   const int level = (at[-step] + 2 * at[0] + at[step]) / 4;
-  if (level > levels.seed || seeds_.size() == kSeeds || !mask.isVisible(x, y)) return;
+  if (level > levels.seed || !mask.isVisible(x, y)) return;
+  if (seeds_.size() == 2 * kSeeds) keepStrongest();
   seeds_.push_back({levels.median - level, x, y});
 }
 

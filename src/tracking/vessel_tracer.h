@@ -95,6 +95,8 @@ class VesselTracer : public VesselDetector {
   const Levels& levelsAt(int x, int y) const;
   void consider(const std::int16_t* at, std::ptrdiff_t step, int x, int y, const OcclusionMask& mask);
   void findSeeds(const cv::Mat_<std::int16_t>& plane, const OcclusionMask& mask);
+  void keepStrongest();
+  static bool isStronger(const Seed& a, const Seed& b);
   bool validate(const Seed& seed, const OcclusionMask& mask, Place& place) const;
   void trace(const Place& seed, const OcclusionMask& mask, VesselPoints& points);
   void follow(Place place, const OcclusionMask& mask, VesselPoints& points);

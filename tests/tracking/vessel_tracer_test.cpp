@@ -176,6 +176,21 @@ TEST(VesselTracer, LooksAtPicturesOfAnySize)
   }
 }
 
+TEST(VesselTracer, TriesTheStrongestSeedsOfTheWholeViewWhenThereAreTooMany)
+{
+  DrawnRetina retina(400, 304);
+  const Centreline line = arc({200.0, 290.0}, 0.0, 0.0, 360.0);
+  retina.vessel(line, 4.0, 0.3);
+  VesselTracerOptions options;
+  options.grid_pitch_px = 4;
+  options.seed_depth = 0.0;  // half of all local minima on the grid: some 10,000, most of them above the vessel
+  const VesselPoints points = trace(PreparedFrame(retina.photograph(kNoise, 1)), options);
+  const auto on_vessel = std::count_if(points.begin(), points.end(), [&](const VesselPoint& point) {
+    return support::distanceTo(line, point.x, point.y) < 3.0;
+  });
+  EXPECT_GT(on_vessel, 100) << "of 144 steps";
+}
+
 TEST(VesselTracer, TurnsWithAVesselThatBendsMoreThanOneStepAtATime)
 {
   const Centreline hairpin = arc({100, 76}, 0.0, 1.0 / 7.0, 20.0);  // 22.5 degrees in 2.7 px, about a step
