@@ -22,9 +22,13 @@ struct Assignment {
   std::string origin;  ///< where it stands, for messages: "my.yaml:3", "--set"
 };
 
+/// What becomes of a YAML list: an error, or the text that a list option reads, "1 2 3" of [1, 2, 3] or of
+/// [[1, 2], [3]], with a semicolon between the lists of lists of a list.
+enum class YamlLists { refused, joined };
+
 /// Reads a YAML file of nested groups.
 /// @throws ConfigurationError when it cannot be read, is no YAML, has a key twice, or a list where a value should be
-std::vector<Assignment> readYaml(const std::string& path);
+std::vector<Assignment> readYaml(const std::string& path, YamlLists lists = YamlLists::refused);
 
 /// Reads "group.key=value" as it follows `--set`.
 /// @throws ConfigurationError when there is no `=`

@@ -4,6 +4,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <fstream>
 #include <set>
 
@@ -14,10 +15,12 @@ namespace {
 
 // No options struct nests deeper; an alias to its own anchor would never end.
 constexpr int kDeepestGroup = 8;
+constexpr int kDeepestList = 3;                // polygons, corners, coordinates
+constexpr std::size_t kLongestList = 1000000;  // characters: aliases may stand for much more than the file holds
 
 class Flattener {
  public:
-  explicit Flattener(const std::string& path) : path_(path) {}
+  Flattener(const std::string& path, YamlLists lists) : path_(path), lists_(lists) {}
 
   void add(const YAML::Node& group, const std::string& prefix, int depth)
   {
@@ -37,9 +40,36 @@ class Flattener {
   void addEntry(const YAML::Node& value, const std::string& key, int depth)
   {
     if (value.IsMap()) return add(value, key + ".", depth + 1);
+    if (value.IsSequence() && lists_ == YamlLists::joined) {
+      std::string text;
+      join(value, key, 1, text);
+      assignments_.push_back({key, text, origin(value)});
+      return;
+    }
     if (value.IsSequence()) fail(value, fmt::format("key '{}' has a list; one value is wanted", key));
     if (!value.IsScalar()) fail(value, fmt::format("key '{}' has no value", key));
     assignments_.push_back({key, value.Scalar(), origin(value)});
+  }
+
+  // Appends the text of a list; returns how deep lists are nested in it.
+  int join(const YAML::Node& value, const std::string& key, int depth, std::string& text) const
+  {
+    if (value.IsScalar()) {
+      text += value.Scalar();
+      return 0;
+    }
+    if (!value.IsSequence()) fail(value, fmt::format("key '{}' has a list of something else than values", key));
+    if (depth > kDeepestList) fail(value, fmt::format("key '{}' has lists nested too deeply", key));
+    int height = 0;
+    std::string separator;
+    for (const auto& entry : value) {
+      text += separator;
+      const int below = join(entry, key, depth + 1, text);
+      if (text.size() > kLongestList) fail(entry, fmt::format("key '{}' has too long a list", key));
+      separator = below == 2 ? "; " : " ";
+      height = std::max(height, below);
+    }
+    return height + 1;
   }
 
   std::string origin(const YAML::Node& node) const { return fmt::format("{}:{}", path_, node.Mark().line + 1); }
@@ -50,6 +80,7 @@ class Flattener {
   }
 
   std::string path_;
+  YamlLists lists_;
   std::set<std::string> seen_;  // keys with their groups
   std::vector<Assignment> assignments_;
 };
@@ -107,12 +138,12 @@ YAML::Node parse(const std::string& path)
 
 }  // namespace
 
-std::vector<Assignment> readYaml(const std::string& path)
+std::vector<Assignment> readYaml(const std::string& path, YamlLists lists)
 {
   const YAML::Node document = parse(path);
   if (!document || document.IsNull()) return {};
   if (!document.IsMap()) throw ConfigurationError(path + ": holds no 'key: value' lines");
-  Flattener flattener(path);
+  Flattener flattener(path, lists);
   flattener.add(document, "", 0);
   return flattener.take();
 }

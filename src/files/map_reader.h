@@ -16,11 +16,12 @@ struct RecordedMap {
   retina::VesselMap map;   ///< um_per_px is 0 where the file says null
   std::int64_t frame = 0;  ///< after which the map was kept
   std::string path;        ///< of the map's picture, for messages
+  std::string track;       ///< SHA-256 of the video, from run.json; empty when that is missing
 };
 
 /// Reads map/map_FFFFFF.png with its .json and seen_FFFFFF.png: the newest frame's, or the given one's. The calibre
-/// comes from vessels.csv where that speaks of this map, else it is twice the distance to the nearest cell that is no
-/// vessel, greatest near the middle of the vessel.
+/// comes from vessels.csv for the newest map; else it follows from the distance to the nearest cell that is no vessel,
+/// which is right in the middle of a vessel and too small beside it.
 /// @throws FileError naming file and field: missing, truncated, of another shape or kind, of another map, no number
 RecordedMap readMap(const std::string& folder, std::optional<std::int64_t> frame = std::nullopt);
 

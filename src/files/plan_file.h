@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "eyeslam/files/map_reader.h"
 #include "eyeslam/fixtures/burn_plan.h"
 
 namespace eyeslam::files {
@@ -19,5 +20,8 @@ fixtures::BurnPlan planFrom(const std::string& text, const std::string& path);
 /// Reads or writes the file; the writing is atomic. @throws FileError
 fixtures::BurnPlan readPlan(const std::string& path);
 void writePlan(const fixtures::BurnPlan& plan, const std::string& path);
+
+/// @throws FileError when plan and map are known to come from different videos, naming both
+void checkSameTrack(const fixtures::BurnPlan& plan, const std::string& plan_path, const RecordedMap& map);
 
 }  // namespace eyeslam::files

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "eyeslam/messaging/link.h"
 
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <cstdlib>
 #include <lcm/lcm-cpp.hpp>
 #include <stdexcept>
@@ -41,6 +46,28 @@ bool lacksPort(const std::string& url)
   return !address.empty() && address.find(':') == std::string::npos;
 }
 
+// What the system grants of a generous buffer: a burst of 200 small messages overflows its default, and LCM complains
+// where it is granted less than it asked for.
+int receiveBufferBytes()
+{
+  constexpr int kWanted = 8'000'000;
+  const int probe = ::socket(AF_INET, SOCK_DGRAM, 0);
+  if (probe < 0) return 0;
+  int granted = 0;
+  socklen_t size = sizeof(granted);
+  ::setsockopt(probe, SOL_SOCKET, SO_RCVBUF, &kWanted, sizeof(kWanted));
+  ::getsockopt(probe, SOL_SOCKET, SO_RCVBUF, &granted, &size);
+  ::close(probe);
+  return std::min(granted, kWanted);
+}
+
+std::string withReceiveBuffer(const std::string& url)
+{
+  if (!isMulticast(url) || url.find("recv_buf_size=") != std::string::npos) return url;
+  const char* joint = url.find('?') == std::string::npos ? "?" : "&";
+  return url + joint + "recv_buf_size=" + std::to_string(receiveBufferBytes());
+}
+
 void check(const std::string& url, bool has_key)
 {
   if (url.find("://") == std::string::npos) {
@@ -63,7 +90,7 @@ Link::Link(const std::string& url, std::int64_t session, const std::optional<Key
 {
   check(url_, key.has_value());
   if (key) authenticator_.emplace(*key);
-  lcm_ = std::make_unique<lcm::LCM>(url_);
+  lcm_ = std::make_unique<lcm::LCM>(withReceiveBuffer(url_));
   // A multicast link is not asked for its descriptor, which would start a receiver; others say good() without a peer.
   if (!lcm_->good() || (!isMulticast(url_) && lcm_->getFileno() < 0)) {
     throw std::runtime_error(
@@ -77,6 +104,26 @@ Link::~Link() = default;
 bool Link::send(const std::string& channel, const std::uint8_t* bytes, std::size_t size)
 {
   return lcm_->publish(channel, bytes, static_cast<unsigned int>(size)) == 0;
+}
+
+bool Link::wait(int timeout_ms)
+{
+  pollfd descriptor{lcm_->getFileno(), POLLIN, 0};
+  return ::poll(&descriptor, 1, timeout_ms) > 0;
+}
+
+std::size_t Link::drain(const ReceiveTime& now, std::size_t most)
+{
+  now_ = now;
+  std::size_t handled = 0;
+  while (handled < most && lcm_->handleTimeout(0) > 0) ++handled;
+  return handled;
+}
+
+bool Link::step()
+{
+  now_.reset();
+  return lcm_->handleTimeout(0) > 0;
 }
 
 }  // namespace eyeslam::messaging

@@ -6,11 +6,12 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "eyeslam/messaging/authentication.h"
+#include "eyeslam/messaging/conversion.h"
+#include "eyeslam/messaging/message_header.h"
 
 namespace lcm {
 class LCM;
@@ -18,15 +19,21 @@ class LCM;
 
 namespace eyeslam::messaging {
 
-/// One program's connection to LCM.
+/// One program's connection to LCM. One thread drains it (LCM hangs when two do); publishing is free to all.
 ///
 ///   Link link("", session, readKey("micron.key"));
-///   Publisher<eyeslam::retina_pose_t> poses(link, "RETINA_POSE");
-///   poses.publish(message, utime_now);
+///   Publisher<micron_command_t> commands(link);
+///   Subscription<micron_state_t> states(link);
+///   while (link.wait(100)) {
+///     link.drain({monotonic_now, utime_now});
+///     if (const MicronState* state = states.latest()) commands.publish(next(*state), states.header().utime,
+///     utime_now);
+///   }
 class Link {
  public:
-  /// @param url      `udpm://ADDRESS:PORT?ttl=N`, `memq://`, `file://PATH?mode=w`; empty: LCM_DEFAULT_URL, and without
-  ///                 that LCM's own address with ttl=0, which does not leave this computer
+  /// @param url      `udpm://ADDRESS:PORT?ttl=N`; `memq://` within this object; `file://PATH?mode=w` writes a log,
+  ///                 `file://PATH?speed=S` reads one, S = 0 without pauses; empty: LCM_DEFAULT_URL, and without that
+  ///                 LCM's own address with ttl=0, which does not leave this computer
   /// @param session  this run of the program, not 0; receivers keep to the first session they hear
   /// @param key      signs messages; without it only what stays on this computer (ttl=0, memq, file) is served
   /// @throws std::runtime_error  one line with the URL and the remedy
@@ -44,11 +51,32 @@ class Link {
   /// Sends an encoded message. @return whether LCM took it (nobody knows whether it arrives)
   bool send(const std::string& channel, const std::uint8_t* bytes, std::size_t size);
 
+  /// Waits for a message without handling it. @return whether there may be one; false after the time, or on a signal
+  bool wait(int timeout_ms);
+
+  /// Hands every message that has come to its subscription; so the subscriptions hold the latest ones after it. 5 to 7
+  /// us a message.
+  /// @param now   by the caller's clocks; messages count as received now
+  /// @param most  bounds the time under a flood; what is left waits in a queue of 10,000 a channel
+  /// @return messages handled; fewer than `most` when there are no more
+  std::size_t drain(const ReceiveTime& now, std::size_t most = 10'000);
+
+  /// Lock step, for reading logs: hands over one message, received at the very time at which it was sent.
+  /// @return false at the end of the log (and at damage, which LCM's reader does not tell apart)
+  bool step();
+
+  /// When the message that is being handled was received.
+  ReceiveTime receivedAt(const MessageHeader& header) const
+  {
+    return now_.value_or(ReceiveTime{header.utime_sent, header.utime_sent});
+  }
+
  private:
   std::string url_;
   std::int64_t session_;
   std::optional<Authenticator> authenticator_;
   std::unique_ptr<lcm::LCM> lcm_;
+  std::optional<ReceiveTime> now_;  // none in lock step
 };
 
 /// Publishes one type on one channel: fills what every message has (contracts, section 4), encodes and signs it.
@@ -56,7 +84,8 @@ class Link {
 template <class Message>
 class Publisher {
  public:
-  Publisher(Link& link, std::string channel) : link_(link), channel_(std::move(channel)) {}
+  explicit Publisher(Link& link, std::string channel = channelOf<Message>()) : link_(link), channel_(std::move(channel))
+  {}
 
   /// @param message     all fields but utime_sent, seq, session and tag are the caller's; these are filled
   /// @param utime_sent  now, us since 1970
@@ -72,15 +101,20 @@ class Publisher {
     return link_.send(channel_, bytes_.data(), bytes_.size());
   }
 
+  /// Publishes a value (conversion.h).
+  /// @param utime  us since 1970: of what it describes
+  /// @return whether it was sent; not where a number in it is not finite or out of its range
+  template <class Value>
+  bool publish(const Value& value, std::int64_t utime, std::int64_t utime_sent)
+  {
+    message_.utime = utime;
+    return write(value, message_) == retina::Reason::none && publish(message_, utime_sent);
+  }
+
   /// Messages published so far, refused ones included.
   std::int64_t count() const { return next_seq_; }
 
  private:
-  template <class T, class = void>
-  struct HasTag : std::false_type {};
-  template <class T>
-  struct HasTag<T, std::void_t<decltype(T::tag)>> : std::true_type {};
-
   bool encode(const Message& message)
   {
     const int size = static_cast<int>(bytes_.size());
@@ -99,6 +133,7 @@ class Publisher {
   Link& link_;
   std::string channel_;
   std::int64_t next_seq_ = 0;
+  Message message_{};  // of the last value
   std::vector<std::uint8_t> bytes_;
 };
 

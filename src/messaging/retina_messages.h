@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "eyeslam/messaging/byte_walk.h"
+#include "eyeslam/messaging/conversion.h"
 #include "eyeslam/retina/pose2.h"
 #include "eyeslam/retina/reason.h"
 #include "eyeslam/retina/vessel_map.h"
@@ -32,28 +34,46 @@ struct RetinaMotion {
   bool tracked = false;
   retina::Reason reason = retina::Reason::none;          ///< why not tracked
   retina::Pose2 map_T_frame;                             ///< the last good one when not tracked
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();    ///< of (x, y, theta): px/s, rad/s
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();    ///< of (x, y, theta): px/s, rad/s; 0 when not tracked
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of (x, y, theta): px^2, px rad, rad^2
 };
 
-/// A point seen in the image, full-resolution px.
+/// Where the view is, when, and on which map (RETINA_POSE).
+struct RetinaPose {
+  FrameStamp frame;
+  MapStamp map;
+  RetinaMotion motion;
+};
+
+/// A point seen in the image, full-resolution px; all zero when absent.
 struct ImagePoint {
   bool present = false;
   Eigen::Vector2d position_px = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< px^2
 };
 
-/// Tip and shaft of the instrument, and the aiming beam's spot.
+/// Tip and shaft of the instrument, and the aiming beam's spot (TOOL_TIP).
 struct InstrumentSight {
+  FrameStamp frame;
   ImagePoint tip;
-  double shaft_angle = 0.0;  ///< rad: where the tip points, image axes
-  double shaft_width_px = 0.0;
+  double shaft_angle = 0.0;     ///< rad: where the tip points, image axes; 0 without a tip
+  double shaft_width_px = 0.0;  ///< 0 without a tip
   ImagePoint spot;
 };
 
-/// Messages without what a Publisher fills.
-retina_pose_t retinaPoseMessage(const FrameStamp& frame, const MapStamp& map, const RetinaMotion& motion);
-tool_tip_t toolTipMessage(const FrameStamp& frame, const InstrumentSight& sight);
+template <>
+struct Conversion<retina_pose_t> : ListedConversion<retina_pose_t, RetinaPose> {};
+template <>
+struct Conversion<tool_tip_t> : ListedConversion<tool_tip_t, InstrumentSight> {};
+
+/// A tile is its own value; map_assembler.h puts tiles together.
+template <>
+struct Conversion<vessel_map_t> {
+  using Value = vessel_map_t;
+  static bool hasItsLengths(ByteWalk walk);
+  /// Checks that the tile lies inside its map and the map is of a possible size, and copies it.
+  static retina::Reason read(const vessel_map_t& message, vessel_map_t& tile);
+};
 
 /// Cuts the vessel map into tiles that fit one UDP fragment and goes through them for ever. Where the map has grown the
 /// tiles are numbered anew, and the cycle goes on at the same place of the new numbering or starts again.

@@ -95,55 +95,12 @@ TEST(MapTileCycle, TellsWhereTheMapLies)
   EXPECT_EQ(tile.px_per_cell, 2.0);
 }
 
-// What a controller needs must pass as one UDP fragment.
-TEST(RetinaMessages, AreBelow1400Bytes)
+TEST(MapTileCycle, FillsATileBelow1400Bytes)
 {
   vessel_map_t tile{};
   ASSERT_TRUE(MapTileCycle().next(mapOf(100, 100), 1, 0, tile));
   EXPECT_EQ(tile.cells, MapTileCycle::kTile * MapTileCycle::kTile);
   EXPECT_LT(tile.getEncodedSize(), 1400);
-  EXPECT_LT(retina_pose_t{}.getEncodedSize(), 1400);
-  EXPECT_LT(tool_tip_t{}.getEncodedSize(), 1400);
-}
-
-TEST(RetinaPoseMessage, CarriesPoseCovarianceAndReason)
-{
-  RetinaMotion motion;
-  motion.reason = retina::Reason::ambiguous;
-  motion.map_T_frame = {1.0, 2.0, 0.3, 1.1};
-  motion.velocity = {4.0, 5.0, 0.6};
-  motion.covariance << 1, 2, 3, 2, 5, 6, 3, 6, 9;
-  const retina_pose_t message = retinaPoseMessage({100, 7, 0.01}, {8, 9, 5.5}, motion);
-
-  EXPECT_EQ(message.utime, 100);
-  EXPECT_EQ(message.frame, 7);
-  EXPECT_EQ(message.exposure, 0.01);
-  EXPECT_FALSE(message.tracked);
-  EXPECT_EQ(message.reason, 4);
-  EXPECT_EQ(message.x_px, 1.0);
-  EXPECT_EQ(message.y_px, 2.0);
-  EXPECT_EQ(message.theta, 0.3);
-  EXPECT_EQ(message.scale, 1.1);
-  EXPECT_EQ(message.velocity_y_px, 5.0);
-  EXPECT_EQ(message.covariance[1], 2.0);
-  EXPECT_EQ(message.covariance[5], 6.0);
-  EXPECT_EQ(message.covariance[8], 9.0);
-  EXPECT_EQ(message.map_id, 8);
-  EXPECT_EQ(message.map_version, 9);
-  EXPECT_EQ(message.um_per_px, 5.5);
-}
-
-TEST(ToolTipMessage, IsZeroWhereNothingIsSeen)
-{
-  InstrumentSight sight;
-  sight.tip.position_px = {5.0, 6.0};
-  sight.spot = {true, {10.0, 20.0}, Eigen::Matrix2d::Identity()};
-  const tool_tip_t message = toolTipMessage({100, 7, 0.0}, sight);
-  EXPECT_FALSE(message.tip_present);
-  EXPECT_EQ(message.tip_x_px, 0.0);
-  EXPECT_TRUE(message.spot_present);
-  EXPECT_EQ(message.spot_y_px, 20.0);
-  EXPECT_EQ(message.spot_covariance[3], 1.0);
 }
 
 }  // namespace
