@@ -17,6 +17,13 @@ struct RetinaPose {
   double theta = 0.0;                                ///< about z, from x to y
 
   Eigen::Matrix3d rotation() const { return Eigen::AngleAxisd(theta, Eigen::Vector3d::UnitZ()).toRotationMatrix(); }
+  Eigen::Isometry3d isometry() const
+  {
+    Eigen::Isometry3d world_T_retina = Eigen::Isometry3d::Identity();
+    world_T_retina.linear() = rotation();
+    world_T_retina.translation() = centre + shift - rotation() * centre;
+    return world_T_retina;
+  }
   Eigen::Vector3d toWorld(const Eigen::Vector3d& retina) const
   {
     return centre + rotation() * (retina - centre) + shift;

@@ -45,6 +45,7 @@ TEST(RetinaPose, ThereAndBackIsTheSamePlaceAndTheCentreOnlyMoves)
   const RetinaPose pose{{1e-3, 2e-3, 0.0}, {30e-6, -20e-6, 5e-6}, 0.3};
   const Eigen::Vector3d place(4e-3, -1e-3, -2e-4);
   EXPECT_TRUE(pose.toRetina(pose.toWorld(place)).isApprox(place));
+  EXPECT_TRUE((pose.isometry() * place).isApprox(pose.toWorld(place)));
   EXPECT_TRUE(pose.toWorld(pose.centre).isApprox(pose.centre + pose.shift));
   // A quarter turn takes x to y, as in image axes.
   const RetinaPose quarter{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 90.0 * kDegree};
