@@ -134,6 +134,46 @@ std::string_view word(Reason reason)
       return "out_of_range";
     case Reason::internal_error:
       return "internal_error";
+    case Reason::asked:
+      return "asked";
+    case Reason::stopped:
+      return "stopped";
+    case Reason::operator_stale:
+      return "operator_stale";
+    case Reason::laser_stale:
+      return "laser_stale";
+    case Reason::not_in_laser:
+      return "not_in_laser";
+    case Reason::foot_switch_up:
+      return "foot_switch_up";
+    case Reason::not_armed:
+      return "not_armed";
+    case Reason::interlock_open:
+      return "interlock_open";
+    case Reason::plan_not_in_force:
+      return "plan_not_in_force";
+    case Reason::target_invalid:
+      return "target_invalid";
+    case Reason::target_burnt:
+      return "target_burnt";
+    case Reason::pose_uncertain:
+      return "pose_uncertain";
+    case Reason::pose_surprising:
+      return "pose_surprising";
+    case Reason::retina_moves:
+      return "retina_moves";
+    case Reason::retina_jumped:
+      return "retina_jumped";
+    case Reason::reach_ends:
+      return "reach_ends";
+    case Reason::standoff_wrong:
+      return "standoff_wrong";
+    case Reason::spot_off_target:
+      return "spot_off_target";
+    case Reason::tip_moves:
+      return "tip_moves";
+    case Reason::tip_unsettled:
+      return "tip_unsettled";
   }
   return "unknown";
 }

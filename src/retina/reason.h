@@ -78,6 +78,27 @@ enum class Reason : std::int16_t {
   not_finite = 69,       ///< NaN or infinity in a message
   out_of_range = 70,     ///< a value that the field cannot have
   internal_error = 71,   ///< an exception in the receiving program
+  // Supervisor and laser interlocks
+  asked = 120,              ///< a human wants it so
+  stopped = 121,            ///< a human stopped it
+  operator_stale = 122,     ///< nothing was heard from the human for too long
+  laser_stale = 123,        ///< nothing was heard from the laser for too long
+  not_in_laser = 125,       ///< the servo is in another state
+  foot_switch_up = 126,     ///< not pressed
+  not_armed = 127,          ///< by the human, or at the laser itself
+  interlock_open = 128,     ///< the remote interlock
+  plan_not_in_force = 129,  ///< not approved, or changed since
+  target_invalid = 130,     ///< in the newest map
+  target_burnt = 131,       ///< already
+  pose_uncertain = 132,     ///< its error may be too large
+  pose_surprising = 133,    ///< not where it was expected
+  retina_moves = 134,       ///< too fast
+  retina_jumped = 135,      ///< a moment ago
+  reach_ends = 136,         ///< the manipulator is near its limit
+  standoff_wrong = 137,     ///< too near the retina, or too far
+  spot_off_target = 138,    ///< in the newest frame
+  tip_moves = 139,          ///< too fast
+  tip_unsettled = 140,      ///< not long enough at its goal
 };
 
 /// The word of a reason, as in `trajectory.csv`; empty for `none`.
