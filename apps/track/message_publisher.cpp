@@ -70,18 +70,19 @@ void MessagePublisher::publishPose(const messaging::FrameStamp& stamp, const tra
   const messaging::MapStamp map_stamp{link_.session(), static_cast<std::int64_t>(map.version), um_per_px_};
   const messaging::RetinaMotion motion{result.tracked, result.reason, result.map_T_frame, velocity(result),
                                        result.covariance};
-  retina_pose_t message = messaging::retinaPoseMessage(stamp, map_stamp, motion);
-  poses_.publish(message, utimeNow());
+  poses_.publish(messaging::RetinaPose{stamp, map_stamp, motion}, stamp.utime, utimeNow());
 }
 
 void MessagePublisher::publishTip(const messaging::FrameStamp& stamp, const tracking::ToolTip& tip)
 {
   messaging::InstrumentSight sight;
-  sight.tip = {tip.present, {tip.x_px, tip.y_px}, tip.covariance};
-  sight.shaft_angle = tip.shaft_angle;
-  sight.shaft_width_px = tip.shaft_width_px;
-  tool_tip_t message = messaging::toolTipMessage(stamp, sight);
-  tips_.publish(message, utimeNow());
+  sight.frame = stamp;
+  if (tip.present) {
+    sight.tip = {true, {tip.x_px, tip.y_px}, tip.covariance};
+    sight.shaft_angle = tip.shaft_angle;
+    sight.shaft_width_px = tip.shaft_width_px;
+  }
+  tips_.publish(sight, stamp.utime, utimeNow());
 }
 
 void MessagePublisher::publishTiles(const messaging::FrameStamp& stamp, const retina::VesselMap& map)

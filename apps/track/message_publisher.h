@@ -35,10 +35,10 @@ class MessagePublisher : public FrameObserver {
   Eigen::Vector3d velocity(const tracking::TrackResult& result) const;
 
   messaging::Link link_;
-  messaging::Publisher<mark_t> marks_{link_, "MARK"};
-  messaging::Publisher<retina_pose_t> poses_{link_, "RETINA_POSE"};
-  messaging::Publisher<tool_tip_t> tips_{link_, "TOOL_TIP"};
-  messaging::Publisher<vessel_map_t> tiles_{link_, "VESSEL_MAP"};
+  messaging::Publisher<mark_t> marks_{link_};
+  messaging::Publisher<retina_pose_t> poses_{link_};
+  messaging::Publisher<tool_tip_t> tips_{link_};
+  messaging::Publisher<vessel_map_t> tiles_{link_};
   messaging::MapTileCycle cycle_;
   vessel_map_t tile_{};
   double um_per_px_;

@@ -5,7 +5,6 @@
 int main()
 {
   eyeslam::messaging::Link link("memq://", 1, {});
-  eyeslam::messaging::Publisher<eyeslam::retina_pose_t> poses(link, "RETINA_POSE");
-  eyeslam::retina_pose_t message = eyeslam::messaging::retinaPoseMessage({}, {}, {});
-  return poses.publish(message, 1) ? 0 : 1;
+  eyeslam::messaging::Publisher<eyeslam::retina_pose_t> poses(link);
+  return poses.publish(eyeslam::messaging::RetinaPose{}, 1, 1) ? 0 : 1;
 }
