@@ -73,4 +73,9 @@ const Eigen::Vector3d& MotionLimiter::deflection(const Eigen::Vector3d& wanted, 
   return deflection_;
 }
 
+Eigen::Vector3d MotionLimiter::withinReach(const Eigen::Vector3d& deflection) const noexcept
+{
+  return shortened(deflection, reach_);
+}
+
 }  // namespace eyeslam::servo

@@ -52,6 +52,9 @@ class MotionLimiter {
   /// One step of the deflection towards what is wanted. Not finite: it stays.
   const Eigen::Vector3d& deflection(const Eigen::Vector3d& wanted, double time_s) noexcept;
 
+  /// Shortened to the reach.
+  Eigen::Vector3d withinReach(const Eigen::Vector3d& deflection) const noexcept;
+
   const Eigen::Vector3d& velocity() const noexcept { return velocity_; }
   /// The last deflection wanted lay beyond the reach.
   bool isSaturated() const noexcept { return saturated_; }

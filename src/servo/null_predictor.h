@@ -17,7 +17,7 @@ struct NullPredictorOptions {
   double middle_hz = 10.0;
   double high_hz = 13.0;
   double damping_per_s = 4.0;
-  double oscillation_um = 120.0;
+  double oscillation_um = 80.0;
   double longest_gap_ms = 50.0;
 
   template <class Self, class Visitor>
@@ -33,8 +33,9 @@ struct NullPredictorOptions {
     visitor.field("high_hz", self.high_hz, Range{0.5, 50}, "Hz", "fastest oscillator; source: loop study, 2.1");
     visitor.field("damping_per_s", self.damping_per_s, Range{0.01, 200}, "1/s",
                   "how fast an oscillation is forgotten; source: loop study, 2.1");
-    visitor.field("oscillation_um", self.oscillation_um, Range{0, 5000}, "um",
-                  "RMS of each oscillator per axis; source: loop study, 2.1");
+    visitor.field(
+        "oscillation_um", self.oscillation_um, Range{0, 5000}, "um",
+        "RMS of each oscillator per axis; source: tremor of 50-100 um, loop study, 1; chosen with eyeslam-bench loop");
     visitor.field("longest_gap_ms", self.longest_gap_ms, Range{1, 1000}, "ms",
                   "after a longer silence it starts anew; source: contracts, 4, Hold without a state");
   }

@@ -33,7 +33,7 @@ class Refusals {
   retina::Reason last() const noexcept { return last_; }
 
  private:
-  std::array<std::int64_t, 128> counts_{};  // by the reason's number
+  std::array<std::int64_t, 256> counts_{};  // by the reason's number
   retina::Reason last_ = retina::Reason::none;
 };
 

@@ -15,7 +15,7 @@ struct RetinaPredictorOptions {
   double no_port_acceleration_um_s2 = 1500.0;
   double turn_deg_s2 = 3.0;
   double zoom_s2 = 0.02;
-  double velocity_mm_s = 3.0;
+  double velocity_mm_s = 0.5;
   double gain = 0.4;
   double gain_walk = 0.02;
   double fast_lag_ms = 40.0;
@@ -60,7 +60,8 @@ struct RetinaPredictorOptions {
     visitor.field("zoom_s2", self.zoom_s2, Range{0, 100}, "1/s^2/sqrt(Hz)",
                   "white acceleration of the scale; source: rendered sequences, 0.06 within 12 s");
     visitor.field("velocity_mm_s", self.velocity_mm_s, Range{0, 100}, "mm/s",
-                  "standard deviation of the velocity at first and after a jump");
+                  "standard deviation of the velocity at first and after a jump, which is over in a moment;"
+                  " chosen with eyeslam-bench loop");
   }
 
   template <class Self, class Visitor>

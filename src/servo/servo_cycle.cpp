@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "eyeslam/servo/servo_cycle.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "eyeslam/servo/loop_time.h"
@@ -24,13 +25,17 @@ ServoCycle::ServoCycle(const ServoCycleOptions& options, const ViewPlacement& pl
       trim_(options.trim, placement.centre),
       integral_(options.integral),
       limiter_(options.limits),
-      lead_(microseconds(options.lead_ms * kMilli)),
+      plant_(options.plant),
       null_at_controller_(options.null_at == "controller")
 {
+  setLead(options.lead_ms * kMilli);
   outlook_.reason = Reason::no_state;
 }
 
-void ServoCycle::setLead(double lead_s) noexcept { lead_ = microseconds(lead_s); }
+void ServoCycle::setLead(double lead_s) noexcept
+{
+  lead_ = microseconds(std::max(0.0, lead_s - plant_.plantLead() + plant_.lead()));
+}
 
 Eigen::Vector3d ServoCycle::toView(const Eigen::Vector3d& manipulator) const noexcept
 {
@@ -119,7 +124,8 @@ const ServoCommand& ServoCycle::command(const Eigen::Vector3d& goal_retina) noex
   command_.saturated = limiter_.isSaturated();
   // The controller subtracts the null that it measures itself. What it is expected to measure is added, so that only
   // the surprise since this state reaches the tip: fresher than any state that came by message.
-  command_.position = null_at_controller_ ? Eigen::Vector3d(command_.deflection + nullAt(now_)) : command_.deflection;
+  const Eigen::Vector3d asked = limiter_.withinReach(plant_.shape(command_.deflection));
+  command_.position = null_at_controller_ ? Eigen::Vector3d(asked + nullAt(now_)) : asked;
   return command_;
 }
 

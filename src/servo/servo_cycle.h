@@ -9,6 +9,7 @@
 #include "eyeslam/servo/integral_action.h"
 #include "eyeslam/servo/motion_limiter.h"
 #include "eyeslam/servo/null_predictor.h"
+#include "eyeslam/servo/plant_inverse.h"
 #include "eyeslam/servo/refusals.h"
 #include "eyeslam/servo/registration_trim.h"
 #include "eyeslam/servo/retina_predictor.h"
@@ -54,11 +55,11 @@ struct Outlook {
 
 /// What goes to the controller; manipulator frame, m.
 struct ServoCommand {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< deflection, or goal of the tip: by `NullAt`
-  Eigen::Vector3d deflection = Eigen::Vector3d::Zero();
-  Eigen::Vector3d goal = Eigen::Vector3d::Zero();  ///< where the tip is meant to be at the outlook's time
-  bool saturated = false;                          ///< the goal lies beyond the reach
-  retina::Reason reason = retina::Reason::none;    ///< why the goal asked for was not followed
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();    ///< deflection, or goal of the tip: by `NullAt`
+  Eigen::Vector3d deflection = Eigen::Vector3d::Zero();  ///< that the tip is meant to have then
+  Eigen::Vector3d goal = Eigen::Vector3d::Zero();        ///< where the tip is meant to be at the outlook's time
+  bool saturated = false;                                ///< the goal lies beyond the reach
+  retina::Reason reason = retina::Reason::none;          ///< why the goal asked for was not followed
 };
 
 /// One cycle of the 1 kHz loop as a function of inputs and time; no clock, no thread, no message. Between its halves
@@ -106,8 +107,9 @@ class ServoCycle {
   RegistrationTrim trim_;
   IntegralAction integral_;
   MotionLimiter limiter_;
+  PlantInverse plant_;
   Refusals refusals_;
-  std::int64_t lead_;  // us
+  std::int64_t lead_ = 0;  // us
   bool null_at_controller_;
   std::optional<ManipulatorState> state_;
   TimedRing<Eigen::Vector3d, 128> goals_;  // by the time at which they hold

@@ -7,6 +7,7 @@
 #include "eyeslam/servo/integral_action.h"
 #include "eyeslam/servo/motion_limiter.h"
 #include "eyeslam/servo/null_predictor.h"
+#include "eyeslam/servo/plant_inverse.h"
 #include "eyeslam/servo/registration_trim.h"
 #include "eyeslam/servo/retina_predictor_options.h"
 
@@ -24,6 +25,7 @@ struct ServoCycleOptions {
   RegistrationTrimOptions trim;
   IntegralActionOptions integral;
   MotionLimiterOptions limits;
+  PlantInverseOptions plant;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor& visitor)
@@ -46,6 +48,7 @@ struct ServoCycleOptions {
     visitor.group("trim", self.trim);
     visitor.group("integral", self.integral);
     visitor.group("limits", self.limits);
+    visitor.group("plant", self.plant);
   }
 };
 
