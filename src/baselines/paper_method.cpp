@@ -46,6 +46,7 @@ PaperMethod::PaperMethod(const tracking::TrackerOptions& options)
     : options_(options),
       frame_(options.frame),
       mask_(options.occlusion),
+      structure_(options.structure),
       selector_(options.selector),
       matcher_(matcherOptions(options)),
       filter_(options.filter),
@@ -59,6 +60,7 @@ const tracking::TrackResult& PaperMethod::track(const cv::Mat& image)
   const PosePrediction predicted = filter_.predict(1.0);
   if (const Reason why = observe(image); why != Reason::none) return refuse(why);
   if (grid_.empty()) {
+    if (structure_.isNoise(frame_, mask_)) return refuse(Reason::noise);
     const PoseEstimate origin{{}, 1e-6 * Eigen::Matrix3d::Identity()};
     filter_.reset(origin);
     for (int i = 0; i < kFirstHits; ++i) grid_.add(all_points_, {});

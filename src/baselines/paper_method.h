@@ -13,6 +13,7 @@
 #include "eyeslam/tracking/pose_filter.h"
 #include "eyeslam/tracking/scan_matcher.h"
 #include "eyeslam/tracking/spurious_detection_filter.h"
+#include "eyeslam/tracking/structure_check.h"
 #include "eyeslam/tracking/vessel_tracer.h"
 
 namespace eyeslam::baselines {
@@ -42,6 +43,7 @@ class PaperMethod : public Method {
   tracking::VesselTracer tracer_;
   tracking::SpuriousDetectionFilter spurious_filter_;
   tracking::CrossVesselSmoother smoother_;
+  tracking::StructureCheck structure_;
   tracking::PointSelector selector_;
   tracking::ScanMatcher matcher_;
   tracking::PoseFilter filter_;

@@ -18,10 +18,10 @@ std::string_view word(Reason reason)
       return "ambiguous";
     case Reason::poor_match:
       return "poor_match";
-    case Reason::blurred:
-      return "blurred";
     case Reason::searching:
       return "searching";
+    case Reason::noise:
+      return "noise";
     case Reason::input_not_finite:
       return "input_not_finite";
     case Reason::bad_time_step:

@@ -15,8 +15,9 @@ enum class Reason : std::int16_t {
   too_few_points = 3,  ///< not enough vessel points to match
   ambiguous = 4,       ///< two places fit alike
   poor_match = 5,      ///< nothing in the map fits
-  blurred = 6,         ///< too smeared to start a map from
-  searching = 7,       ///< lost; the search of the whole map goes on in the next frame
+  // 6 is free: it was never given
+  searching = 7,  ///< lost; the search of the whole map goes on in the next frame
+  noise = 8,      ///< the picture is noise, so no map is started from it
   // Fixtures: what stands between the hand and its goal
   input_not_finite = 20,  ///< an input was not a finite, plausible number, or a pose not rigid
   bad_time_step = 21,     ///< the time since the last cycle was not positive

@@ -46,6 +46,7 @@ class EyeSlamTracker::Steps {
   OcclusionMask mask_;
   ToolTipTracker tool_;
   std::unique_ptr<VesselDetector> detector_;
+  StructureCheck structure_;
   PointSelector selector_;
   Localizer localizer_;
   PoseFilter filter_;
@@ -70,6 +71,7 @@ EyeSlamTracker::Steps::Steps(const TrackerOptions& options)
       mask_(options.occlusion),
       tool_(options.tool),
       detector_(makeDetector(options)),
+      structure_(options.structure),
       selector_(options.selector),
       localizer_(options),
       filter_(options.filter),
@@ -120,6 +122,7 @@ const TrackResult& EyeSlamTracker::Steps::startMap()
 {
   // A white wall has no vessels either: nothing could ever be matched against such a map.
   if (static_cast<int>(chosen_.size()) < options_.matcher.min_points) return refuse(Reason::too_few_points);
+  if (structure_.isNoise(frame_, mask_)) return refuse(Reason::noise);
   const PoseEstimate origin{{}, 1e-6 * Eigen::Matrix3d::Identity()};
   const MaskedContrast picture(frame_, mask_);
   start_frame_ = result_.frame;

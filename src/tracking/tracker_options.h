@@ -22,6 +22,7 @@
 #include "eyeslam/tracking/scan_matcher.h"
 #include "eyeslam/tracking/smear_model.h"
 #include "eyeslam/tracking/spurious_detection_filter.h"
+#include "eyeslam/tracking/structure_check.h"
 #include "eyeslam/tracking/tool_tip_tracker.h"
 #include "eyeslam/tracking/vessel_tracer.h"
 
@@ -75,6 +76,7 @@ struct TrackerOptions {
   VesselTracerOptions tracer;
   CrossVesselSmootherOptions smoother;
   SpuriousDetectionFilterOptions spurious;
+  StructureCheckOptions structure;
   PointSelectorOptions selector;
   ScanMatcherOptions matcher;
   RelocalizerOptions relocalizer;
@@ -102,6 +104,7 @@ struct TrackerOptions {
     visitor.group("tracer", self.tracer);
     visitor.group("smoother", self.smoother);
     visitor.group("spurious", self.spurious);
+    visitor.group("structure", self.structure);
     visitor.group("selector", self.selector);
     visitor.group("matcher", self.matcher);
     visitor.group("relocalizer", self.relocalizer);

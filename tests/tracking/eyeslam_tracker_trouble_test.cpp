@@ -120,6 +120,7 @@ struct Nothing {
   std::string name;
   cv::Scalar colour;
   double noise;
+  double blur_px = 0.0;
 };
 void PrintTo(const Nothing& nothing, std::ostream* out) { *out << nothing.name; }
 
@@ -128,9 +129,11 @@ cv::Mat pictureOf(const Nothing& nothing, unsigned seed)
   cv::RNG random(seed + 1);
   cv::Mat picture(kSmall, CV_8UC3);
   if (nothing.noise > 0.0)
-    random.fill(picture, cv::RNG::NORMAL, nothing.colour, cv::Scalar::all(nothing.noise));
+    random.fill(picture, cv::RNG::NORMAL, nothing.colour,
+                cv::Scalar::all(nothing.noise * (1.0 + 3.5 * nothing.blur_px)));
   else
     picture.setTo(nothing.colour);
+  if (nothing.blur_px > 0.0) cv::GaussianBlur(picture, picture, {}, nothing.blur_px);
   return picture;
 }
 
@@ -138,6 +141,8 @@ const Nothing kBlack{"black", cv::Scalar::all(0.0), 0.0};
 const Nothing kWhite{"white", cv::Scalar::all(255.0), 0.0};
 const Nothing kNoise{"noise", cv::Scalar::all(128.0), 60.0};
 const Nothing kRedNoise{"noise in a retina's colour", cv::Scalar(30.0, 70.0, 170.0), 25.0};
+const Nothing kSoftNoise{"the same through a lens out of focus", cv::Scalar(30.0, 70.0, 170.0), 8.0, 1.5};
+const Nothing kSofterNoise{"farther out of focus", cv::Scalar(30.0, 70.0, 170.0), 8.0, 3.0};
 
 class NothingToSee : public testing::TestWithParam<Nothing> {};
 class NothingThatFits : public testing::TestWithParam<Nothing> {};
@@ -171,7 +176,8 @@ TEST_P(NothingThatFits, NeverErasesTheMap)
   expectAt(tracker.getResult(), back, 2.0 * kSubPixel_px);
 }
 
-INSTANTIATE_TEST_SUITE_P(Pictures, NothingToSee, testing::Values(kBlack, kWhite, kNoise));
+INSTANTIATE_TEST_SUITE_P(Pictures, NothingToSee,
+                         testing::Values(kBlack, kWhite, kNoise, kRedNoise, kSoftNoise, kSofterNoise));
 INSTANTIATE_TEST_SUITE_P(Pictures, NothingThatFits, testing::Values(kBlack, kWhite, kNoise, kRedNoise));
 
 TEST(EyeSlamTracker, KeepsItsMapWhileAnotherRetinaIsShown)
