@@ -2,6 +2,7 @@
 #include "track/message_publisher.h"
 
 #include <algorithm>
+#include <optional>
 #include <random>
 
 #include "command_line/clocks.h"
@@ -31,8 +32,9 @@ std::optional<messaging::Key> keyIn(const std::string& file)
 }  // namespace
 
 MessagePublisher::MessagePublisher(const std::string& url, const std::string& key_file, double um_per_px,
-                                   const std::string& configuration, const std::string& configuration_hash)
-    : link_(url, newSession(), keyIn(key_file)), um_per_px_(um_per_px)
+                                   double frame_rate, const std::string& configuration,
+                                   const std::string& configuration_hash)
+    : link_(url, newSession(), keyIn(key_file)), um_per_px_(um_per_px), frame_rate_(frame_rate)
 {
   mark(mark_t::START, configuration, configuration_hash);
 }
@@ -59,16 +61,13 @@ void MessagePublisher::onFrame(const files::VideoFrame& frame, const tracking::T
   publishPose(stamp, result, map);
   if (const tracking::EyeSlamTracker* tracker = method.eyeSlam()) publishTip(stamp, tracker->getToolTip());
   publishTiles(stamp, map);
-  utime_last_ = utime_read_;
-  last_.reset();
-  if (result.tracked) last_ = result.map_T_frame;
 }
 
 void MessagePublisher::publishPose(const messaging::FrameStamp& stamp, const tracking::TrackResult& result,
                                    const retina::VesselMap& map)
 {
   const messaging::MapStamp map_stamp{link_.session(), static_cast<std::int64_t>(map.version), um_per_px_};
-  const messaging::RetinaMotion motion{result.tracked, result.reason, result.map_T_frame, velocity(result),
+  const messaging::RetinaMotion motion{result.tracked, result.reason, result.map_T_frame, frame_rate_ * result.velocity,
                                        result.covariance};
   poses_.publish(messaging::RetinaPose{stamp, map_stamp, motion}, stamp.utime, utimeNow());
 }
@@ -93,15 +92,6 @@ void MessagePublisher::publishTiles(const messaging::FrameStamp& stamp, const re
     tile_.um_per_px = um_per_px_;
     tiles_.publish(tile_, utimeNow());
   }
-}
-
-// Over one frame: nothing is known of the motion where either of its ends was not tracked.
-Eigen::Vector3d MessagePublisher::velocity(const tracking::TrackResult& result) const
-{
-  const double seconds = static_cast<double>(utime_read_ - utime_last_) * 1e-6;
-  if (!result.tracked || !last_ || seconds <= 0.0) return Eigen::Vector3d::Zero();
-  const retina::Pose2& now = result.map_T_frame;
-  return Eigen::Vector3d(now.x - last_->x, now.y - last_->y, retina::wrapAngle(now.theta - last_->theta)) / seconds;
 }
 
 void MessagePublisher::finish() { mark(mark_t::STOP, "", ""); }

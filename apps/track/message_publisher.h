@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 
 #include "eyeslam/mark_t.hpp"
@@ -17,9 +16,10 @@ class MessagePublisher : public FrameObserver {
  public:
   /// @param url            of LCM; empty = LCM_DEFAULT_URL
   /// @param key_file       empty: unsigned, and only within this computer
+  /// @param frame_rate     nominal, 1/s: makes a velocity per frame one per second
   /// @param configuration  YAML, for the log
   /// @throws std::runtime_error  the key or the URL cannot be used
-  MessagePublisher(const std::string& url, const std::string& key_file, double um_per_px,
+  MessagePublisher(const std::string& url, const std::string& key_file, double um_per_px, double frame_rate,
                    const std::string& configuration, const std::string& configuration_hash);
 
   void onRead(const files::VideoFrame& frame) override;
@@ -32,7 +32,6 @@ class MessagePublisher : public FrameObserver {
                    const retina::VesselMap& map);
   void publishTip(const messaging::FrameStamp& stamp, const tracking::ToolTip& tip);
   void publishTiles(const messaging::FrameStamp& stamp, const retina::VesselMap& map);
-  Eigen::Vector3d velocity(const tracking::TrackResult& result) const;
 
   messaging::Link link_;
   messaging::Publisher<mark_t> marks_{link_};
@@ -42,9 +41,8 @@ class MessagePublisher : public FrameObserver {
   messaging::MapTileCycle cycle_;
   vessel_map_t tile_{};
   double um_per_px_;
+  double frame_rate_;
   std::int64_t utime_read_ = 0;
-  std::int64_t utime_last_ = 0;
-  std::optional<retina::Pose2> last_;  // of the frame before, where that was tracked
 };
 
 }  // namespace eyeslam::apps

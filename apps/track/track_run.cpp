@@ -29,6 +29,8 @@ const std::vector<std::string> kOwnedNames = {"trajectory.csv", "map",          
                                               "mosaic.png",     "mosaic.json",   "overlay.mp4",
                                               "truth_pose.png", "truth_map.png", "run.json"};
 
+Verbosity verbosity(const TrackArguments& arguments) { return arguments.quiet ? Verbosity::quiet : Verbosity::normal; }
+
 files::VideoSourceOptions sourceOptions(const TrackArguments& arguments)
 {
   files::VideoSourceOptions options;
@@ -58,8 +60,6 @@ void checkThatInputIsKept(const std::vector<std::string>& inputs, const std::str
   }
 }
 
-Verbosity verbosity(const TrackArguments& arguments) { return arguments.quiet ? Verbosity::quiet : Verbosity::normal; }
-
 }  // namespace
 
 TrackRun::TrackRun(const TrackArguments& arguments)
@@ -79,19 +79,19 @@ TrackRun::TrackRun(const TrackArguments& arguments)
 void TrackRun::addObservers()
 {
   const double rate = source_->framesPerSecond();
-  if (arguments_.lcm) addMessages();
+  if (arguments_.lcm) addMessages(rate);
   if (!arguments_.record.empty()) observers_.push_back(std::make_unique<Recorder>(arguments_.record, rate));
   if (!arguments_.truth.empty()) observers_.push_back(std::make_unique<TruthReport>(arguments_.truth, folder_));
   if (arguments_.display) observers_.push_back(std::make_unique<TrackWindow>());
   if (!arguments_.no_overlay) addOverlay(rate);
 }
 
-void TrackRun::addMessages()
+void TrackRun::addMessages(double frames_per_second)
 {
   try {
-    observers_.push_back(
-        std::make_unique<MessagePublisher>(*arguments_.lcm, arguments_.key, pixel_size_.um_per_px.value_or(0.0),
-                                           configuration::yamlOf(options_), configuration::hashOf(options_)));
+    observers_.push_back(std::make_unique<MessagePublisher>(
+        *arguments_.lcm, arguments_.key, pixel_size_.um_per_px.value_or(0.0), frames_per_second,
+        configuration::yamlOf(options_), configuration::hashOf(options_)));
   } catch (const std::runtime_error& error) {
     throw UsageError(error.what());  // URL or key
   }

@@ -29,7 +29,7 @@ class TrackRun {
 
  private:
   void addObservers();
-  void addMessages();
+  void addMessages(double frames_per_second);
   void addOverlay(double frames_per_second);
   void trackFrames();
   void trackFrame(const files::VideoFrame& frame);

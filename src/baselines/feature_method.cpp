@@ -24,20 +24,20 @@ constexpr int kKeyframeInliers = 30;   // if it lies well
 }  // namespace
 
 FeatureMethod::FeatureMethod(const tracking::TrackerOptions& options, cv::Ptr<cv::Feature2D> features, int norm)
-    : options_(options), frame_(options.frame), mask_(options.occlusion), features_(std::move(features)), matcher_(norm)
+    : masked_(options), features_(std::move(features)), matcher_(norm)
 {}
 
 const tracking::TrackResult& FeatureMethod::track(const cv::Mat& image)
 {
   ++result_.frame;
-  if (const Reason why = observe(image); why != Reason::none) return refuse(why);
+  if (const Reason why = observe(image); why != Reason::none) return refuseFrame(result_, why);
   if (keyframes_.empty()) {
     keyframes_.push_back({now_.keypoints, now_.descriptors.clone(), {}});
     return accept({}, static_cast<int>(now_.keypoints.size()));
   }
   const Keyframe& keyframe = nearestKeyframe();
   const std::optional<Fit> fit = fitTo(keyframe);
-  if (!fit) return refuse(Reason::poor_match);
+  if (!fit) return refuseFrame(result_, Reason::poor_match);
   const Pose2 map_T_frame = keyframe.map_T_keyframe * fit->keyframe_T_frame;
   if (fit->inliers >= kKeyframeInliers && fit->keyframe_T_frame.translation().norm() > kKeyframe_px) {
     keyframes_.push_back({now_.keypoints, now_.descriptors.clone(), map_T_frame});
@@ -47,12 +47,8 @@ const tracking::TrackResult& FeatureMethod::track(const cv::Mat& image)
 
 Reason FeatureMethod::observe(const cv::Mat& image)
 {
-  if (const Reason why = frame_.assign(image); why != Reason::none) return why;
-  mask_.update(frame_);
-  const auto& limits = options_.localizer;
-  if (mask_.medianRed() < limits.least_red || mask_.visibleFraction() < limits.least_visible) return Reason::blackout;
-  frame_.normalise(mask_);
-  makeContrastPicture(frame_, mask_, picture_, visible_);
+  if (const Reason why = masked_.assign(image); why != Reason::none) return why;
+  makeContrastPicture(masked_.frame(), masked_.mask(), picture_, visible_);
   features_->detectAndCompute(picture_, visible_, now_.keypoints, now_.descriptors);
   return static_cast<int>(now_.keypoints.size()) < kLeastInliers ? Reason::too_few_points : Reason::none;
 }
@@ -71,7 +67,7 @@ std::optional<FeatureMethod::Fit> FeatureMethod::fitTo(const Keyframe& keyframe)
   std::vector<std::vector<cv::DMatch>> pairs;
   matcher_.knnMatch(now_.descriptors, keyframe.descriptors, pairs, 2);
   std::vector<cv::Point2f> from, to;
-  const Eigen::Vector2f centre = frame_.centre().cast<float>();
+  const Eigen::Vector2f centre = masked_.frame().centre().cast<float>();
   const cv::Point2f middle(centre.x(), centre.y());
   for (const auto& pair : pairs) {
     if (pair.size() < 2 || pair[0].distance > kRatio * pair[1].distance) continue;
@@ -95,18 +91,9 @@ const tracking::TrackResult& FeatureMethod::accept(const Pose2& map_T_frame, int
   map_T_frame_ = map_T_frame;
   result_.tracked = true;
   result_.reason = Reason::none;
-  result_.map_T_frame = tracking::inFullPixels(map_T_frame, frame_);
+  result_.map_T_frame = tracking::inFullPixels(map_T_frame, masked_.frame());
   result_.points = inliers;
   result_.score = static_cast<double>(inliers) / static_cast<double>(now_.keypoints.size());
-  return result_;
-}
-
-const tracking::TrackResult& FeatureMethod::refuse(Reason why)
-{
-  result_.tracked = false;
-  result_.reason = why;
-  result_.points = 0;
-  result_.score = 0.0;
   return result_;
 }
 

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "eyeslam/baselines/method.h"
-#include "eyeslam/tracking/frame.h"
-#include "eyeslam/tracking/occlusion_mask.h"
+#include "eyeslam/tracking/masked_frame.h"
 
 namespace eyeslam::baselines {
 
@@ -38,11 +37,8 @@ class FeatureMethod : public Method {
   const Keyframe& nearestKeyframe() const;
   std::optional<Fit> fitTo(const Keyframe& keyframe);
   const tracking::TrackResult& accept(const retina::Pose2& map_T_frame, int inliers);
-  const tracking::TrackResult& refuse(retina::Reason why);
 
-  tracking::TrackerOptions options_;
-  tracking::Frame frame_;
-  tracking::OcclusionMask mask_;
+  tracking::MaskedFrame masked_;
   cv::Ptr<cv::Feature2D> features_;
   cv::BFMatcher matcher_;
   std::vector<Keyframe> keyframes_;

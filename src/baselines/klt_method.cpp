@@ -24,15 +24,13 @@ constexpr int kPyramid = 3;         // levels above the frame: jumps to some 40 
 
 }  // namespace
 
-KltMethod::KltMethod(const tracking::TrackerOptions& options)
-    : options_(options), frame_(options.frame), mask_(options.occlusion)
-{}
+KltMethod::KltMethod(const tracking::TrackerOptions& options) : masked_(options) {}
 
 const tracking::TrackResult& KltMethod::track(const cv::Mat& image)
 {
   ++result_.frame;
-  if (const Reason why = observe(image); why != Reason::none) return refuse(why);
-  if (!last_picture_.empty() && !follow()) return refuse(Reason::poor_match);
+  if (const Reason why = observe(image); why != Reason::none) return refuseFrame(result_, why);
+  if (!last_picture_.empty() && !follow()) return refuseFrame(result_, Reason::poor_match);
   if (static_cast<int>(corners_.size()) < kRenewBelow) chooseCorners();
   picture_.copyTo(last_picture_);
   return accept();
@@ -40,12 +38,8 @@ const tracking::TrackResult& KltMethod::track(const cv::Mat& image)
 
 Reason KltMethod::observe(const cv::Mat& image)
 {
-  if (const Reason why = frame_.assign(image); why != Reason::none) return why;
-  mask_.update(frame_);
-  const auto& limits = options_.localizer;
-  if (mask_.medianRed() < limits.least_red || mask_.visibleFraction() < limits.least_visible) return Reason::blackout;
-  frame_.normalise(mask_);
-  makeContrastPicture(frame_, mask_, picture_, visible_);
+  if (const Reason why = masked_.assign(image); why != Reason::none) return why;
+  makeContrastPicture(masked_.frame(), masked_.mask(), picture_, visible_);
   return Reason::none;
 }
 
@@ -57,12 +51,13 @@ bool KltMethod::follow()
   std::vector<std::uint8_t> found;
   std::vector<float> errors;
   cv::calcOpticalFlowPyrLK(last_picture_, picture_, corners_, moved, found, errors, kWindow, kPyramid);
-  const cv::Point2f middle(static_cast<float>(frame_.centre().x()), static_cast<float>(frame_.centre().y()));
+  const cv::Point2f middle(static_cast<float>(masked_.frame().centre().x()),
+                           static_cast<float>(masked_.frame().centre().y()));
   std::vector<cv::Point2f> from, to, places;
   for (std::size_t i = 0; i < moved.size(); ++i) {
     const int x = static_cast<int>(std::lround(moved[i].x));
     const int y = static_cast<int>(std::lround(moved[i].y));
-    if (!found[i] || !mask_.isVisible(x, y)) continue;
+    if (!found[i] || !masked_.mask().isVisible(x, y)) continue;
     from.push_back(moved[i] - middle);
     to.push_back(chosen_[i]);
     places.push_back(moved[i]);
@@ -87,7 +82,8 @@ bool KltMethod::follow()
 void KltMethod::chooseCorners()
 {
   cv::goodFeaturesToTrack(picture_, corners_, kCorners, 0.01, 8.0, visible_, 5);
-  const cv::Point2f middle(static_cast<float>(frame_.centre().x()), static_cast<float>(frame_.centre().y()));
+  const cv::Point2f middle(static_cast<float>(masked_.frame().centre().x()),
+                           static_cast<float>(masked_.frame().centre().y()));
   chosen_.clear();
   for (const cv::Point2f& corner : corners_) chosen_.push_back(corner - middle);
   map_T_chosen_ = map_T_frame_;
@@ -97,18 +93,9 @@ const tracking::TrackResult& KltMethod::accept()
 {
   result_.tracked = true;
   result_.reason = Reason::none;
-  result_.map_T_frame = tracking::inFullPixels(map_T_frame_, frame_);
+  result_.map_T_frame = tracking::inFullPixels(map_T_frame_, masked_.frame());
   result_.points = static_cast<int>(corners_.size());
   result_.score = static_cast<double>(corners_.size()) / kCorners;
-  return result_;
-}
-
-const tracking::TrackResult& KltMethod::refuse(Reason why)
-{
-  result_.tracked = false;
-  result_.reason = why;
-  result_.points = 0;
-  result_.score = 0.0;
   return result_;
 }
 

@@ -4,8 +4,7 @@
 #include <vector>
 
 #include "eyeslam/baselines/method.h"
-#include "eyeslam/tracking/frame.h"
-#include "eyeslam/tracking/occlusion_mask.h"
+#include "eyeslam/tracking/masked_frame.h"
 
 namespace eyeslam::baselines {
 
@@ -24,11 +23,8 @@ class KltMethod : public Method {
   bool follow();
   void chooseCorners();
   const tracking::TrackResult& accept();
-  const tracking::TrackResult& refuse(retina::Reason why);
 
-  tracking::TrackerOptions options_;
-  tracking::Frame frame_;
-  tracking::OcclusionMask mask_;
+  tracking::MaskedFrame masked_;
   cv::Mat picture_, visible_, last_picture_;
   std::vector<cv::Point2f> chosen_;   // where the corners were when chosen, centred frame px
   std::vector<cv::Point2f> corners_;  // where they are in the last frame, frame px

@@ -44,8 +44,7 @@ tracking::ScanMatcherOptions matcherOptions(const tracking::TrackerOptions& trac
 
 PaperMethod::PaperMethod(const tracking::TrackerOptions& options)
     : options_(options),
-      frame_(options.frame),
-      mask_(options.occlusion),
+      masked_(options),
       structure_(options.structure),
       selector_(options.selector),
       matcher_(matcherOptions(options)),
@@ -60,7 +59,7 @@ const tracking::TrackResult& PaperMethod::track(const cv::Mat& image)
   const PosePrediction predicted = filter_.predict(1.0);
   if (const Reason why = observe(image); why != Reason::none) return refuse(why);
   if (grid_.empty()) {
-    if (structure_.isNoise(frame_, mask_)) return refuse(Reason::noise);
+    if (structure_.isNoise(masked_.frame(), masked_.mask())) return refuse(Reason::noise);
     const PoseEstimate origin{{}, 1e-6 * Eigen::Matrix3d::Identity()};
     filter_.reset(origin);
     for (int i = 0; i < kFirstHits; ++i) grid_.add(all_points_, {});
@@ -69,7 +68,7 @@ const tracking::TrackResult& PaperMethod::track(const cv::Mat& image)
   const MatchResult match = localize(predicted);
   if (match.reason != Reason::none) return refuse(match.reason);
   const PoseEstimate smoothed = filter_.correct({match.map_T_frame, match.covariance});
-  grid_.decay(mask_, {frame_.width(), frame_.height()}, smoothed.map_T_frame, result_.frame);
+  grid_.decay(masked_.mask(), masked_.size(), smoothed.map_T_frame, result_.frame);
   grid_.add(all_points_, smoothed.map_T_frame);
   return accept(smoothed, match.score);
 }
@@ -79,16 +78,13 @@ Reason PaperMethod::observe(const cv::Mat& image)
 {
   traced_.clear();  // a refused frame shows no findings of the one before
   points_.clear();
-  if (const Reason why = frame_.assign(image); why != Reason::none) return why;
-  mask_.update(frame_);
-  const auto& limits = options_.localizer;
-  if (mask_.medianRed() < limits.least_red || mask_.visibleFraction() < limits.least_visible) return Reason::blackout;
-  frame_.normalise(mask_);
-  tracer_.detect(frame_, mask_, traced_);
-  spurious_filter_.removeFrom(traced_, frame_, mask_);
-  smoother_.smoothAcross(traced_, frame_, mask_);
-  selector_.choose(traced_, frame_.centre(), points_);
-  selector_.choose(traced_, frame_.centre(), static_cast<int>(traced_.size()), all_points_);
+  if (const Reason why = masked_.assign(image); why != Reason::none) return why;
+  const tracking::Frame& frame = masked_.frame();
+  tracer_.detect(frame, masked_.mask(), traced_);
+  spurious_filter_.removeFrom(traced_, frame, masked_.mask());
+  smoother_.smoothAcross(traced_, frame, masked_.mask());
+  selector_.choose(traced_, frame.centre(), points_);
+  selector_.choose(traced_, frame.centre(), static_cast<int>(traced_.size()), all_points_);
   const bool enough = static_cast<int>(points_.size()) >= options_.matcher.min_points;
   return enough ? Reason::none : Reason::too_few_points;
 }
@@ -101,7 +97,7 @@ MatchResult PaperMethod::localize(const PosePrediction& predicted)
   tracking::SearchWindow wide;
   wide.centre = predicted.map_T_frame;
   wide.half_x_px = wide.half_y_px = options_.localizer.wide_cells * options_.occupancy.cell_px;
-  const double farthest_px = frame_.centre().norm();
+  const double farthest_px = masked_.frame().centre().norm();
   wide.half_theta = options_.localizer.wide_steps * options_.occupancy.cell_px / farthest_px;
   return matcher_.search(points_, grid_, wide);
 }
@@ -109,10 +105,11 @@ MatchResult PaperMethod::localize(const PosePrediction& predicted)
 const tracking::TrackResult& PaperMethod::accept(const PoseEstimate& map_T_frame, double score)
 {
   map_T_frame_ = map_T_frame.map_T_frame;
-  const Eigen::Vector3d unit(frame_.pixelSize().x(), frame_.pixelSize().y(), 1.0);
+  const Eigen::Vector3d unit(masked_.frame().pixelSize().x(), masked_.frame().pixelSize().y(), 1.0);
   result_.tracked = true;
   result_.reason = Reason::none;
-  result_.map_T_frame = tracking::inFullPixels(map_T_frame_, frame_);
+  result_.map_T_frame = tracking::inFullPixels(map_T_frame_, masked_.frame());
+  result_.velocity = unit.cwiseProduct(filter_.velocity());
   result_.covariance = unit.asDiagonal() * map_T_frame.covariance * unit.asDiagonal();
   result_.points = static_cast<int>(points_.size());
   result_.score = score;
@@ -122,16 +119,12 @@ const tracking::TrackResult& PaperMethod::accept(const PoseEstimate& map_T_frame
 const tracking::TrackResult& PaperMethod::refuse(Reason why)
 {
   filter_.coast();
-  result_.tracked = false;
-  result_.reason = why;
-  result_.points = static_cast<int>(points_.size());
-  result_.score = 0.0;
-  return result_;
+  return refuseFrame(result_, why, static_cast<int>(points_.size()));
 }
 
 void PaperMethod::updateMap()
 {
-  if (result_.tracked) views_.add(mask_, {frame_.width(), frame_.height()}, map_T_frame_);
+  if (result_.tracked) views_.add(masked_.mask(), masked_.size(), map_T_frame_);
 }
 
 const retina::VesselMap& PaperMethod::vesselMap()
@@ -140,12 +133,12 @@ const retina::VesselMap& PaperMethod::vesselMap()
   cv::Mat_<std::uint8_t> window;
   grid_.copyWindow(cells, window);
   const Eigen::Vector2d first =
-      frame_.pixelSize().cwiseProduct(kCell_px * Eigen::Vector2d(cells.x + 0.5, cells.y + 0.5));
+      masked_.frame().pixelSize().cwiseProduct(kCell_px * Eigen::Vector2d(cells.x + 0.5, cells.y + 0.5));
   map_.width = cells.width;
   map_.height = cells.height;
-  map_.px_per_cell = kCell_px * frame_.pixelSize().x();
-  map_.origin_x = frame_.centreInImage().x() + first.x();
-  map_.origin_y = frame_.centreInImage().y() + first.y();
+  map_.px_per_cell = kCell_px * masked_.frame().pixelSize().x();
+  map_.origin_x = masked_.frame().centreInImage().x() + first.x();
+  map_.origin_y = masked_.frame().centreInImage().y() + first.y();
   map_.probability.assign(window.begin(), window.end());
   map_.calibre_px.assign(map_.probability.size(), 0);
   map_.seen.assign(map_.probability.size(), 0);

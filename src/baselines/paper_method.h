@@ -6,8 +6,7 @@
 #include "eyeslam/baselines/method.h"
 #include "eyeslam/baselines/view_count.h"
 #include "eyeslam/tracking/cross_vessel_smoother.h"
-#include "eyeslam/tracking/frame.h"
-#include "eyeslam/tracking/occlusion_mask.h"
+#include "eyeslam/tracking/masked_frame.h"
 #include "eyeslam/tracking/occupancy_map.h"
 #include "eyeslam/tracking/point_selector.h"
 #include "eyeslam/tracking/pose_filter.h"
@@ -38,8 +37,7 @@ class PaperMethod : public Method {
   const tracking::TrackResult& refuse(retina::Reason why);
 
   tracking::TrackerOptions options_;
-  tracking::Frame frame_;
-  tracking::OcclusionMask mask_;
+  tracking::MaskedFrame masked_;
   tracking::VesselTracer tracer_;
   tracking::SpuriousDetectionFilter spurious_filter_;
   tracking::CrossVesselSmoother smoother_;

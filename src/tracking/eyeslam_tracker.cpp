@@ -6,6 +6,7 @@
 #include "eyeslam/tracking/detection.h"
 #include "eyeslam/tracking/full_pixels.h"
 #include "eyeslam/tracking/localizer.h"
+#include "eyeslam/tracking/masked_frame.h"
 #include "eyeslam/tracking/mosaic_picture.h"
 #include "eyeslam/tracking/track_display.h"
 
@@ -28,12 +29,11 @@ class EyeSlamTracker::Steps {
   const retina::VesselMap& vesselMap() const { return published_.map(); }
   std::vector<cv::Point2f> pointsInImage() const;
   cv::Mat drawMosaic(cv::Point2d& origin) const;
-  double pixelSize() const { return frame_.pixelSize().x(); }
+  double pixelSize() const { return masked_.frame().pixelSize().x(); }
 
   cv::Mat bgr;  // a ViSP image as the frame wants it
 
  private:
-  bool isDark() const;
   const TrackResult& startMap();
   const TrackResult& startAgain(const MaskedContrast& picture);
   void beginAt(const MaskedContrast& picture, const PoseEstimate& mosaic_T_frame);
@@ -42,8 +42,7 @@ class EyeSlamTracker::Steps {
   std::int64_t framesSinceStart() const { return result_.frame - start_frame_; }
 
   TrackerOptions options_;
-  Frame frame_;
-  OcclusionMask mask_;
+  MaskedFrame masked_;
   ToolTipTracker tool_;
   std::unique_ptr<VesselDetector> detector_;
   StructureCheck structure_;
@@ -67,8 +66,7 @@ class EyeSlamTracker::Steps {
 
 EyeSlamTracker::Steps::Steps(const TrackerOptions& options)
     : options_(options),
-      frame_(options.frame),
-      mask_(options.occlusion),
+      masked_(options),
       tool_(options.tool),
       detector_(makeDetector(options)),
       structure_(options.structure),
@@ -87,15 +85,14 @@ const TrackResult& EyeSlamTracker::Steps::track(const cv::Mat& image)
 {
   ++result_.frame;
   const PosePrediction predicted = filter_.predict(1.0);
-  if (const Reason why = frame_.assign(image); why != Reason::none) return refuse(why);
-  mask_.update(frame_);
-  if (isDark()) return refuse(Reason::blackout);
-  frame_.normalise(mask_);
-  const MaskedContrast picture(frame_, mask_);
-  tool_result_ = tool_.update(frame_, mask_, image);
+  if (const Reason why = masked_.assign(image); why != Reason::none) return refuse(why);
+  const Frame& frame = masked_.frame();
+  const OcclusionMask& mask = masked_.mask();
+  const MaskedContrast picture = masked_.contrast();
+  tool_result_ = tool_.update(frame, mask, image);
   // Detect: Z_t, the vessel points of this frame.
-  detector_->detect(frame_, mask_, points_);
-  selector_.choose(points_, frame_.centre(), chosen_);
+  detector_->detect(frame, mask, points_);
+  selector_.choose(points_, frame.centre(), chosen_);
   if (mosaic_.empty()) return startMap();
   if (anchor_.isBetterStart(picture, framesSinceStart())) return startAgain(picture);
   // Localize: B_t by scan matching around the prediction, refined and verified; then L_t.
@@ -105,7 +102,7 @@ const TrackResult& EyeSlamTracker::Steps::track(const cv::Mat& image)
   const PoseEstimate mosaic_T_frame = filter_.correct(found.pose);
   // Map: what is seen is added, what is seen missing decays, the rest stays.
   const Pose2& pose = mosaic_T_frame.map_T_frame;
-  occupancy_.decay(mask_, picture.size(), pose, result_.frame);
+  occupancy_.decay(mask, picture.size(), pose, result_.frame);
   occupancy_.add(chosen_, pose);
   mosaic_.blend(picture, pose, found.sigma, framesSinceStart());
   anchor_.update(mosaic_, framesSinceStart());
@@ -113,18 +110,13 @@ const TrackResult& EyeSlamTracker::Steps::track(const cv::Mat& image)
   return accept(mosaic_T_frame, found.score);
 }
 
-bool EyeSlamTracker::Steps::isDark() const
-{
-  return mask_.medianRed() < options_.localizer.least_red || mask_.visibleFraction() < options_.localizer.least_visible;
-}
-
 const TrackResult& EyeSlamTracker::Steps::startMap()
 {
   // A white wall has no vessels either: nothing could ever be matched against such a map.
   if (static_cast<int>(chosen_.size()) < options_.matcher.min_points) return refuse(Reason::too_few_points);
-  if (structure_.isNoise(frame_, mask_)) return refuse(Reason::noise);
+  if (structure_.isNoise(masked_.frame(), masked_.mask())) return refuse(Reason::noise);
   const PoseEstimate origin{{}, 1e-6 * Eigen::Matrix3d::Identity()};
-  const MaskedContrast picture(frame_, mask_);
+  const MaskedContrast picture = masked_.contrast();
   start_frame_ = result_.frame;
   localizer_.reserve(picture.size());
   published_.start(pixelSize());
@@ -162,20 +154,21 @@ const TrackResult& EyeSlamTracker::Steps::refuse(Reason why)
     chosen_.clear();
     tool_result_ = {};
   }
-  result_.tracked = false;
-  result_.reason = why;
-  result_.points = static_cast<int>(chosen_.size());
-  result_.score = 0.0;
-  return result_;
+  return refuseFrame(result_, why, static_cast<int>(chosen_.size()));
 }
 
 const TrackResult& EyeSlamTracker::Steps::accept(const PoseEstimate& mosaic_T_frame, double score)
 {
-  const Eigen::Vector3d unit(frame_.pixelSize().x(), frame_.pixelSize().y(), 1.0);
+  const Frame& frame = masked_.frame();
+  const Eigen::Vector3d unit(frame.pixelSize().x(), frame.pixelSize().y(), 1.0);
+  const Pose2 map_T_mosaic = anchor_.mosaic_T_start().inverse();
+  Eigen::Vector3d velocity = filter_.velocity();
+  velocity.head<2>() = map_T_mosaic.linear() * velocity.head<2>();
   last_pose_ = mosaic_T_frame.map_T_frame;
   result_.tracked = true;
   result_.reason = Reason::none;
-  result_.map_T_frame = inFullPixels(anchor_.mosaic_T_start().inverse() * last_pose_, frame_);
+  result_.map_T_frame = inFullPixels(map_T_mosaic * last_pose_, frame);
+  result_.velocity = unit.cwiseProduct(velocity);
   result_.covariance = unit.asDiagonal() * mosaic_T_frame.covariance * unit.asDiagonal();
   result_.points = static_cast<int>(chosen_.size());
   result_.score = score;
@@ -186,8 +179,8 @@ void EyeSlamTracker::Steps::updateMap()
 {
   if (mosaic_.empty()) return;
   if (result_.tracked) {
-    published_.observe(mask_, {frame_.width(), frame_.height()}, mosaic_.centre(), last_pose_);
-    picture_.observe(frame_, mask_, mosaic_.centre(), last_pose_);
+    published_.observe(masked_.mask(), masked_.size(), mosaic_.centre(), last_pose_);
+    picture_.observe(masked_.frame(), masked_.mask(), mosaic_.centre(), last_pose_);
     published_.moveTo(anchor_.mosaic_T_start().inverse(), mosaic_.centre());
   }
   published_.slice(mosaic_);
@@ -202,9 +195,10 @@ std::vector<cv::Point2f> EyeSlamTracker::Steps::pointsInImage() const
 {
   std::vector<cv::Point2f> points;
   points.reserve(points_.size());
+  const Frame& frame = masked_.frame();
   for (const VesselPoint& point : points_) {
-    const Eigen::Vector2d centred = Eigen::Vector2d(point.x, point.y) - frame_.centre();
-    const Eigen::Vector2d image = frame_.pixelSize().cwiseProduct(centred) + frame_.centreInImage();
+    const Eigen::Vector2d centred = Eigen::Vector2d(point.x, point.y) - frame.centre();
+    const Eigen::Vector2d image = frame.pixelSize().cwiseProduct(centred) + frame.centreInImage();
     points.emplace_back(static_cast<float>(image.x()), static_cast<float>(image.y()));
   }
   return points;
@@ -219,7 +213,7 @@ cv::Mat EyeSlamTracker::Steps::drawMosaic(cv::Point2d& origin) const
   // Moved as a whole with frame 0; the turn of some 0.01 deg is left out.
   const Eigen::Vector2d at(corner.x, corner.y);
   const Eigen::Vector2d moved = at + anchor_.mosaic_T_start().inverse().translation();
-  const Eigen::Vector2d full = (frame_.pixelSize().array() * (moved.array() + 0.5) - 0.5).matrix();
+  const Eigen::Vector2d full = (masked_.frame().pixelSize().array() * (moved.array() + 0.5) - 0.5).matrix();
   origin = {full.x(), full.y()};
   return picture;
 }

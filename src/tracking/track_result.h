@@ -16,8 +16,10 @@ struct TrackResult {
   retina::Reason reason = retina::Reason::none;          ///< why not tracked
   retina::Pose2 map_T_frame;                             ///< L_t; the last good one when not tracked
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of (x, y, theta): px^2, px rad, rad^2
-  int points = 0;                                        ///< vessel points used for matching
-  double score = 0.0;                                    ///< mean cell value of the match, [0, 1]
+  /// Filtered, of (x, y, theta) per frame period; px, rad. Zero while not tracked, and of methods without a filter.
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  int points = 0;      ///< vessel points used for matching
+  double score = 0.0;  ///< mean cell value of the match, [0, 1]
 };
 
 /// Instrument tip in the image, full-resolution px.

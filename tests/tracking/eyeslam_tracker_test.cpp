@@ -85,6 +85,24 @@ TEST(EyeSlamTracker, FollowsADriftBelowAPixel)
   }
 }
 
+TEST(EyeSlamTracker, SaysHowFastTheViewMovesAndNothingWhereItIsLost)
+{
+  EyeSlamTracker tracker;
+  const auto follow = [&](int from, int to, const cv::Point& step) {
+    for (int frame = from; frame < to; ++frame)
+      tracker.track(smallRetina().view(kSmall, frame * step, static_cast<unsigned>(frame)));
+    return tracker.getResult().velocity;
+  };
+  EXPECT_EQ(follow(0, 1, {}).norm(), 0.0) << "one frame shows no motion";
+  const Eigen::Vector3d velocity = follow(1, 25, {4, -2});
+  EXPECT_NEAR(velocity.x(), 4.0, kSubPixel_px);
+  EXPECT_NEAR(velocity.y(), -2.0, kSubPixel_px);
+  EXPECT_NEAR(velocity.z(), 0.0, 0.1 * kDegree);
+  tracker.track(cv::Mat(kSmall, CV_8UC3, cv::Scalar(2, 3, 5)));
+  ASSERT_FALSE(tracker.getResult().tracked);
+  EXPECT_EQ(tracker.getResult().velocity.norm(), 0.0);
+}
+
 TEST(EyeSlamTracker, TakesImagesOfViSPLikeThoseOfOpenCV)
 {
   EyeSlamTracker opencv, visp_colour;
