@@ -50,4 +50,16 @@ bool Interruption::requested()
   return requested_;
 }
 
+// A signal that came before is delivered here.
+Interruption::Suspension::Suspension(const Interruption& interruption)
+    : blocked_(interruption.descriptor_ >= 0 && !interruption.requested_)
+{
+  if (blocked_) setBlocked(SIG_UNBLOCK);
+}
+
+Interruption::Suspension::~Suspension()
+{
+  if (blocked_) setBlocked(SIG_BLOCK);
+}
+
 }  // namespace eyeslam::apps

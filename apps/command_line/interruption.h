@@ -15,6 +15,19 @@ class Interruption {
   /// Whether a signal has come, now or before.
   bool requested();
 
+  /// While it lives, a signal ends the program at once, as usual: around a call that may take long and cannot be asked,
+  /// before there is anything to keep.
+  class Suspension {
+   public:
+    explicit Suspension(const Interruption& interruption);
+    ~Suspension();
+    Suspension(const Suspension&) = delete;
+    Suspension& operator=(const Suspension&) = delete;
+
+   private:
+    bool blocked_;
+  };
+
  private:
   int descriptor_ = -1;  // the signals can be read from it
   bool requested_ = false;

@@ -40,6 +40,21 @@ files::VideoSourceOptions sourceOptions(const TrackArguments& arguments)
   return options;
 }
 
+// A large folder is checked for long, a camera may answer late: neither is deaf to Ctrl-C.
+std::unique_ptr<files::VideoSource> openSource(const TrackArguments& arguments, Interruption& interruption)
+{
+  files::VideoSourceOptions options = sourceOptions(arguments);
+  std::optional<Progress> progress;
+  options.checking = [&](std::int64_t checked, std::int64_t all) {
+    if (!progress) progress.emplace("checking " + arguments.input, all, verbosity(arguments));
+    progress->show(checked);
+    return !interruption.requested();
+  };
+  std::optional<Interruption::Suspension> abrupt;
+  if (arguments.input.rfind("camera:", 0) == 0) abrupt.emplace(interruption);
+  return files::openVideoSource(arguments.input, options);
+}
+
 // How many frames the progress bar waits for.
 std::optional<std::int64_t> expectedFrames(const files::VideoSource& source, const TrackArguments& arguments)
 {
@@ -65,7 +80,7 @@ void checkThatInputIsKept(const std::vector<std::string>& inputs, const std::str
 TrackRun::TrackRun(const TrackArguments& arguments)
     : arguments_(arguments),
       options_(configurationOf(arguments)),
-      source_(files::openVideoSource(arguments.input, sourceOptions(arguments))),
+      source_(openSource(arguments, interruption_)),
       pixel_size_(files::pixelSizeOf(arguments.input, arguments.um_per_px)),
       method_(baselines::makeMethod(arguments.method, options_.tracker)),
       folder_(arguments.out, kOwnedNames),

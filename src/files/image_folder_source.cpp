@@ -17,6 +17,7 @@ ImageFolderSource::ImageFolderSource(std::vector<std::string> paths, const Video
   const auto wanted = static_cast<std::size_t>(options.last_frame + 1);
   if (options.last_frame >= 0 && wanted < paths_.size()) paths_.resize(wanted);  // damage after it is none
   checkAll();
+  options_.checking = nullptr;  // what it refers to lasts no longer
 }
 
 cv::Mat ImageFolderSource::load(const std::string& path, std::string& converted) const
@@ -36,6 +37,7 @@ void ImageFolderSource::checkAll()
   cv::Mat first;
   std::string converted;
   bool all_grey = true, any_lit = false;
+  std::int64_t checked = 0;
   for (const std::string& path : paths_) {
     std::string note;
     const cv::Mat image = load(path, note);
@@ -47,10 +49,20 @@ void ImageFolderSource::checkAll()
     if (converted.empty() && !note.empty()) converted = fmt::format("{}: {}, as in all images like it", path, note);
     all_grey = all_grey && hasEqualChannels(image);
     any_lit = any_lit || isLit(image);
+    sayChecked(++checked);
   }
   grey_ = all_grey && any_lit;
   if (!converted.empty()) notices_.push_back(converted);
   if (grey_) notices_.push_back(paths_.front() + ": all channels are equal; taken as grey");
+}
+
+// Thousands of images take minutes, in which nobody should wonder whether the program still lives.
+void ImageFolderSource::sayChecked(std::int64_t count) const
+{
+  const auto all = static_cast<std::int64_t>(paths_.size());
+  if (!options_.checking || options_.checking(count, all)) return;
+  throw FileError(
+      fmt::format("{}: interrupted after checking {} of {} images; nothing written", paths_.front(), count, all));
 }
 
 bool ImageFolderSource::read(VideoFrame& frame)

@@ -8,7 +8,8 @@ namespace eyeslam::files {
 /// Image files as a video. All are decoded once on construction, so that a bad one is found before any work.
 class ImageFolderSource : public VideoSource {
  public:
-  /// @throws FileError naming the first image that is damaged, of a type that cannot be used, or unlike the first
+  /// @throws FileError naming the first image that is damaged, of a type that cannot be used, or unlike the first;
+  ///                   or when `options.checking` ends it
   ImageFolderSource(std::vector<std::string> paths, const VideoSourceOptions& options);
 
   bool read(VideoFrame& frame) override;
@@ -19,6 +20,7 @@ class ImageFolderSource : public VideoSource {
 
  private:
   void checkAll();
+  void sayChecked(std::int64_t count) const;
   cv::Mat load(const std::string& path, std::string& converted) const;
 
   std::vector<std::string> paths_;

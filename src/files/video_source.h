@@ -50,10 +50,14 @@ struct VideoSourceOptions {
   double frames_per_second = 30.0;  ///< of images, which carry no time
   std::int64_t last_frame = -1;  ///< number of the last frame that will be asked for, -1 = all: damage after it is none
   std::function<double()> now;   ///< monotonic clock, s: the time of a camera's frames
+  /// Called with how many images of a folder are checked, and how many there are; false ends the opening.
+  std::function<bool(std::int64_t checked, std::int64_t all)> checking;
 };
 
 /// Opens a video file, an image folder, a glob of images, or `camera:N`.
-/// @throws FileError naming the input: missing, empty, no video, no images, images damaged or of differing size or type
+/// @throws FileError naming the input: missing, empty, no video, no images, images damaged or of differing size or
+/// type,
+///                   or ended by `checking`
 std::unique_ptr<VideoSource> openVideoSource(const std::string& input, const VideoSourceOptions& options);
 
 }  // namespace eyeslam::files

@@ -61,6 +61,32 @@ class Source : public ::testing::Test {
   support::TemporaryFolder folder_;
 };
 
+TEST_F(Source, SaysAfterEachImageHowFarTheCheckOfAFolderIs)
+{
+  VideoSourceOptions options;
+  std::vector<std::int64_t> checked;
+  options.checking = [&](std::int64_t count, std::int64_t all) {
+    EXPECT_EQ(all, 5);
+    checked.push_back(count);
+    return true;
+  };
+  EXPECT_EQ(numbersRead(*openVideoSource(images(5), options)).size(), 5U);
+  EXPECT_EQ(checked, (std::vector<std::int64_t>{1, 2, 3, 4, 5}));
+}
+
+TEST_F(Source, EndsTheCheckOfAFolderWhenAsked)
+{
+  VideoSourceOptions options;
+  options.checking = [](std::int64_t count, std::int64_t) { return count < 2; };
+  const std::string folder = images(5);
+  try {
+    openVideoSource(folder, options);
+    FAIL() << "was not ended";
+  } catch (const FileError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("2 of 5"));
+  }
+}
+
 TEST_F(Source, ReadsEveryFrameOfAVideoWithItsNumberAndTime)
 {
   for (const auto& [name, coding] : {std::pair{"a.mp4", VideoCoding::h264}, {"a.mkv", VideoCoding::lossless}}) {

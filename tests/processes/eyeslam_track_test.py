@@ -219,8 +219,35 @@ class NothingToSee(TrackCase):
         rng = np.random.default_rng(3)
         self.assert_nothing_found([rng.integers(0, 256, (SIZE[1], SIZE[0], 3), np.uint8) for _ in range(12)])
 
+    def test_noise_in_the_colour_of_a_retina_in_and_out_of_focus(self):
+        rng = np.random.default_rng(4)
+        for blur in (0.0, 1.5, 3.0):
+            frames = []
+            for _ in range(12):
+                grain = rng.normal(0.0, 1.0, (SIZE[1], SIZE[0], 3)).astype(np.float32)
+                grain = cv2.GaussianBlur(grain, (0, 0), blur) if blur else grain
+                frames.append(np.clip((30, 70, 170) + 20.0 * grain / grain.std(), 0, 255).astype(np.uint8))
+            with self.subTest(blur=blur):
+                self.assert_nothing_found(frames)
+                self.assertIn("noise", {row["reason"] for row in self.rows()})
+
 
 class Interruption(TrackCase):
+    def test_ctrl_c_ends_the_check_of_a_large_folder_which_tells_how_far_it_is(self):
+        os.mkdir(self.path("images"))
+        picture = np.random.default_rng(1).integers(0, 256, (1200, 1600, 3), np.uint8)
+        cv2.imwrite(self.path("images/0.png"), picture)
+        for number in range(1, 2000):  # some minutes of decoding
+            os.link(self.path("images/0.png"), self.path(f"images/{number}.png"))
+        process = subprocess.Popen([PROGRAM, self.path("images"), "--out", self.out], stderr=subprocess.PIPE, text=True)
+        progress = process.stderr.readline()  # after five seconds
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+        self.assertRegex(progress, r"checking .*images .*\d+/2000")
+        self.assertEqual(process.returncode, 1, errors)
+        self.assertIn("nothing written", errors.splitlines()[-1])
+        self.assertEqual(os.listdir(self.path("results")), [])
+
     def interrupt(self, number):
         video = retina_video(self.path("a.avi"), 400, code="MJPG")
         process = subprocess.Popen([PROGRAM, video, "--out", self.out, "--set", "frame.scale=1"], stdout=subprocess.PIPE,
