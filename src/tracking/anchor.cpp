@@ -35,10 +35,10 @@ bool Anchor::isBetterStart(const MaskedContrast& frame, std::int64_t frames_sinc
   return frames_since_start <= options_.settle_frames && sharpness(frame) > options_.sharper * sharpness_;
 }
 
-void Anchor::startAgain(const Mosaic& mosaic, std::int64_t frames_since_start)
+void Anchor::startAgain(const MaskedContrast& frame, const Mosaic& mosaic, std::int64_t frames_since_start)
 {
   smeared_ = true;
-  sharpness_ /= options_.sharper;
+  sharpness_ = sharpness(frame);
   goal_ = now_ = {};
   const auto rough = dense_search_.find(mosaic, picture(), {});
   if (!rough) return;  // nothing better is known than that the view stood still

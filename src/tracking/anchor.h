@@ -34,7 +34,7 @@ struct AnchorOptions {
                   "a correction is spread over so many, because a servo must not see a step; source: study 6");
     visitor.field("settle_frames", self.settle_frames, Range{0, 100}, "frames",
                   "after the first one, in which a sharper one may take its place; source: a saccade lasts 3 frames");
-    visitor.field("sharper", self.sharper, Range{1.0, 10.0}, "times the gradient of frame 0",
+    visitor.field("sharper", self.sharper, Range{1.0, 10.0}, "times the gradient of the start",
                   "that makes a frame so much better to start from; source: rendered saccades 1.2 to 2.3, drift 1.1");
   }
 };
@@ -50,10 +50,11 @@ class Anchor {
 
   /// Keeps frame 0, which makes the mosaic.
   void start(const MaskedContrast& frame);
-  /// Whether this frame, one of the first, is so much sharper than frame 0 that the map should start from it.
+  /// Whether this frame, one of the first, is so much sharper than the one the map started from that it should start
+  /// from this one instead.
   bool isBetterStart(const MaskedContrast& frame, std::int64_t frames_since_start) const;
-  /// Finds frame 0 in a mosaic that was started again from a sharper frame.
-  void startAgain(const Mosaic& mosaic, std::int64_t frames_since_start);
+  /// Finds frame 0 in a mosaic that was started again from a sharper frame, this one.
+  void startAgain(const MaskedContrast& frame, const Mosaic& mosaic, std::int64_t frames_since_start);
   /// Registers frame 0 when its turn has come, and moves a step towards the last result.
   void update(const Mosaic& mosaic, std::int64_t frames_since_start);
   /// Starts the mosaic again from frame 0, when it turns out that what was added since had the wrong scale; not when
@@ -75,7 +76,7 @@ class Anchor {
   DenseSearch dense_search_;
   cv::Mat_<std::int16_t> contrast_;
   cv::Mat_<std::uint8_t> hidden_;
-  double sharpness_ = 0.0;
+  double sharpness_ = 0.0;  // of the frame that the map started from
   bool smeared_ = false;
   AlignmentTemplate template_;
   Eigen::Vector2d motion_ = Eigen::Vector2d::Zero();  // of the view in frame 0, map px per frame

@@ -131,7 +131,7 @@ const TrackResult& EyeSlamTracker::Steps::startAgain(const MaskedContrast& pictu
   const PoseEstimate origin{{}, 1e-6 * Eigen::Matrix3d::Identity()};
   occupancy_.clear();
   beginAt(picture, origin);
-  anchor_.startAgain(mosaic_, framesSinceStart());
+  anchor_.startAgain(picture, mosaic_, framesSinceStart());
   return accept(origin, 0.0);
 }
 

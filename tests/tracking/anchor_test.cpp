@@ -115,6 +115,38 @@ TEST(Anchor, CallsASharpFrameABetterStartThanASmearedOne)
   }
 }
 
+// Every start anew forgets what was seen: a frame as sharp as the one started from is no reason.
+TEST(Anchor, StartsAgainOnceForFramesAsSharpAsTheOneItStartedFrom)
+{
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const AnalyticRetina retina(seed);
+    Anchor anchor = makeAnchor();
+    anchor.start(noisy(retina.smeared({}, kSize, {16.0, 6.0}), seed).picture());
+    const auto frame = [&](int number) { return noisy(retina.view({20.0 + number, 7.5}, kSize), seed + number); };
+    Mosaic mosaic;
+    const AnalyticView first = frame(1);
+    ASSERT_TRUE(anchor.isBetterStart(first.picture(), 1));
+    mosaic.start(first.picture());
+    anchor.startAgain(first.picture(), mosaic, 1);
+    for (int number = 2; number <= 4; ++number)
+      EXPECT_FALSE(anchor.isBetterStart(frame(number).picture(), number)) << seed << " frame " << number;
+  }
+}
+
+TEST(Anchor, StartsAgainFromASharpFrameAlsoWhenOneLessSmearedCameBefore)
+{
+  const AnalyticRetina retina(2);
+  Anchor anchor = makeAnchor();
+  anchor.start(noisy(retina.smeared({}, kSize, {24.0, 6.0}), 1).picture());
+  const AnalyticView less = noisy(retina.smeared({20.0, 5.0}, kSize, {10.0, 3.0}), 2);
+  const AnalyticView sharp = noisy(retina.view({30.0, 8.0}, kSize), 3);
+  ASSERT_TRUE(anchor.isBetterStart(less.picture(), 1));
+  Mosaic mosaic;
+  mosaic.start(less.picture());
+  anchor.startAgain(less.picture(), mosaic, 1);
+  EXPECT_TRUE(anchor.isBetterStart(sharp.picture(), 2));
+}
+
 TEST(Anchor, KeepsAStartThatIsAsSharpAsTheFramesAfterIt)
 {
   for (unsigned seed = 1; seed <= 4; ++seed) {
@@ -134,8 +166,9 @@ TEST(Anchor, FindsASmearedFrame0InTheMosaicOfASharperFrame)
       Anchor anchor = makeAnchor();
       anchor.start(noisy(retina.smeared({}, kSize, 0.8 * motion), 1).picture());
       Mosaic mosaic;
-      mosaic.start(noisy(retina.view({motion.x(), motion.y()}, kSize), 2).picture());
-      anchor.startAgain(mosaic, 1);
+      const AnalyticView sharp = noisy(retina.view({motion.x(), motion.y()}, kSize), 2);
+      mosaic.start(sharp.picture());
+      anchor.startAgain(sharp.picture(), mosaic, 1);
       EXPECT_LT(distance(anchor.mosaic_T_start(), {-motion.x(), -motion.y()}), 0.3) << seed;
     }
   }
@@ -149,8 +182,9 @@ TEST(Anchor, AssumesThatTheViewStoodStillWhereFrame0ShowsNothing)
   Anchor anchor = makeAnchor();
   anchor.start(flat.picture());
   Mosaic mosaic;
-  mosaic.start(retina.view({20.0, 0.0}, kSize).picture());
-  anchor.startAgain(mosaic, 1);
+  const AnalyticView other = retina.view({20.0, 0.0}, kSize);
+  mosaic.start(other.picture());
+  anchor.startAgain(other.picture(), mosaic, 1);
   EXPECT_EQ(distance(anchor.mosaic_T_start(), {}), 0.0);
 }
 
