@@ -14,6 +14,7 @@
 #include "eyeslam/configuration/listing.h"
 #include "eyeslam/files/map_files.h"
 #include "eyeslam/files/whole_file.h"
+#include "eyeslam/tracking/eyeslam_tracker.h"
 #include "track/message_publisher.h"
 #include "track/overlay_writer.h"
 #include "track/recorder.h"
@@ -53,6 +54,11 @@ std::unique_ptr<files::VideoSource> openSource(const TrackArguments& arguments, 
   std::optional<Interruption::Suspension> abrupt;
   if (arguments.input.rfind("camera:", 0) == 0) abrupt.emplace(interruption);
   return files::openVideoSource(arguments.input, options);
+}
+
+bool isMapCutOff(const baselines::Method& method)
+{
+  return method.eyeSlam() != nullptr && method.eyeSlam()->isMapCutOff();
 }
 
 // How many frames the progress bar waits for.
@@ -139,6 +145,7 @@ void TrackRun::run()
   publish();
   sayNotices();
   saySnapshotsMissed();
+  sayMapCutOff();
   sayDone();
 }
 
@@ -200,6 +207,7 @@ void TrackRun::writeRecord(double wall_s) const
   record["last_frame"] = last_frame_;
   record["interrupted"] = interrupted_;
   record["counts"] = summary_.counts();
+  record["map_cut_off"] = isMapCutOff(*method_);
   record["notices"] = source_->notices();
   record["timing"] = summary_.timing(wall_s);
   folder_.write("run.json", record.dump(2) + "\n");
@@ -235,6 +243,14 @@ void TrackRun::saySnapshotsMissed() const
     fmt::print(stderr, "eyeslam-track: --snapshots {}: not kept, the frames tracked are {} to {}\n", frame,
                arguments_.from, last_frame_);
   }
+}
+
+void TrackRun::sayMapCutOff() const
+{
+  if (arguments_.quiet || !isMapCutOff(*method_)) return;
+  const retina::VesselMap& map = method_->vesselMap();
+  fmt::print(stderr, "eyeslam-track: the vessel map ends at {} x {} cells; the retina seen beyond is not in it\n",
+             map.width, map.height);
 }
 
 void TrackRun::sayDone() const

@@ -39,6 +39,7 @@ class TrackRun {
   void sayNotices();
   void sayInterrupted() const;
   void saySnapshotsMissed() const;
+  void sayMapCutOff() const;
   void sayDone() const;
 
   const TrackArguments& arguments_;

@@ -27,6 +27,7 @@ class EyeSlamTracker::Steps {
   const TrackResult& result() const { return result_; }
   const ToolTip& tool() const { return tool_result_; }
   const retina::VesselMap& vesselMap() const { return published_.map(); }
+  bool isMapCutOff() const { return published_.isCutOff(); }
   std::vector<cv::Point2f> pointsInImage() const;
   cv::Mat drawMosaic(cv::Point2d& origin) const;
   double pixelSize() const { return masked_.frame().pixelSize().x(); }
@@ -273,6 +274,7 @@ void EyeSlamTracker::finishMap() { steps_->finishMap(); }
 const TrackResult& EyeSlamTracker::getResult() const { return steps_->result(); }
 const ToolTip& EyeSlamTracker::getToolTip() const { return steps_->tool(); }
 std::vector<cv::Point2f> EyeSlamTracker::getPoints() const { return steps_->pointsInImage(); }
+bool EyeSlamTracker::isMapCutOff() const { return steps_->isMapCutOff(); }
 const retina::VesselMap& EyeSlamTracker::getVesselMap() const { return steps_->vesselMap(); }
 
 cv::Mat EyeSlamTracker::getMosaic(cv::Point2d& origin, double& px_per_pixel) const

@@ -57,6 +57,8 @@ class EyeSlamTracker : public vpTracker {
   std::vector<cv::Point2f> getPoints() const;
   /// The published vessel map; full-resolution px, cells of `px_per_cell`.
   const retina::VesselMap& getVesselMap() const;
+  /// Whether more retina was seen than the published map may hold (PublishedMap::kLargestSide).
+  bool isMapCutOff() const;
   /// The retina seen so far in BGR, 8 bit, one pixel a processed pixel; black where never seen.
   /// @param origin        set to the map coordinates (full px) of the centre of the picture's pixel (0, 0)
   /// @param px_per_pixel  set to the full px a picture's pixel

@@ -128,7 +128,7 @@ void OccupancyMap::clear()
 {
   tiles_.clear();
   known_ = {};
-  ++changes_;
+  cleared_at_ = ++changes_;
 }
 
 std::uint8_t OccupancyMap::cell(int i, int j) const

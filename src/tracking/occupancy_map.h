@@ -84,6 +84,8 @@ class OccupancyMap {
   const TileGrid<Tile>& tiles() const { return tiles_; }
   /// Counts the calls that changed the map.
   std::uint32_t changes() const { return changes_; }
+  /// `changes()` after the last `clear`: what was derived before is void, also where no tile is left to tell.
+  std::uint32_t clearedAt() const { return cleared_at_; }
 
  private:
   void hit(int i, int j);
@@ -95,6 +97,7 @@ class OccupancyMap {
   TileGrid<Tile> tiles_;
   cv::Rect known_;
   std::uint32_t changes_ = 0;
+  std::uint32_t cleared_at_ = 0;
 };
 
 }  // namespace eyeslam::tracking

@@ -53,6 +53,17 @@ void enlarge(cv::Mat_<Value>& grid, const cv::Rect& from, const cv::Rect& to, Va
   grid = grown;
 }
 
+// Of what is wanted, as much as may be had without giving up what is there.
+cv::Range limited(const cv::Range& there, const cv::Range& wanted)
+{
+  constexpr int kMost = PublishedMap::kLargestSide;
+  static_assert(kMost % kBlock == 0);
+  if (wanted.size() <= kMost) return wanted;
+  if (there.empty()) return {wanted.start, wanted.start + kMost};
+  const int start = std::max(wanted.start, there.end - kMost);
+  return {start, std::min(wanted.end, start + kMost)};
+}
+
 cv::Rect inBlocks(const cv::Rect& cells)
 {
   return {floorDivide(cells.x, kBlock), floorDivide(cells.y, kBlock), cells.width / kBlock, cells.height / kBlock};
@@ -80,12 +91,15 @@ void PublishedMap::start(double px_per_cell)
   map_.px_per_cell = px_per_cell;
 }
 
-bool PublishedMap::grow(const cv::Rect& wanted)
+void PublishedMap::grow(const cv::Rect& wanted)
 {
   const cv::Rect whole = wholeBlocks(wanted);
-  const cv::Rect to = cells_.empty() ? whole : (cells_ | whole);
-  if (to == cells_) return true;
-  if (to.width > kLargestSide || to.height > kLargestSide) return false;
+  const cv::Rect all = cells_.empty() ? whole : (cells_ | whole);
+  const cv::Range columns = limited({cells_.x, cells_.br().x}, {all.x, all.br().x});
+  const cv::Range rows = limited({cells_.y, cells_.br().y}, {all.y, all.br().y});
+  const cv::Rect to(columns.start, rows.start, columns.size(), rows.size());
+  cut_off_ = cut_off_ || to != all;
+  if (to == cells_) return;
   enlarge(states_, inBlocks(cells_), inBlocks(to));
   enlarge(map_.probability, cells_, to);
   enlarge(map_.calibre_px, cells_, to);
@@ -97,14 +111,14 @@ bool PublishedMap::grow(const cv::Rect& wanted)
   map_.height = to.height;
   ++map_.version;
   place();
-  return true;
 }
 
 void PublishedMap::observe(const OcclusionMask& mask, const cv::Size& frame, const Eigen::Vector2d& mosaic_centre,
                            const retina::Pose2& mosaic_T_frame)
 {
-  const cv::Rect view = viewBox(frame, mosaic_T_frame, mosaic_centre);
-  if (!grow(view)) return;
+  const cv::Rect seen_now = viewBox(frame, mosaic_T_frame, mosaic_centre);
+  grow(seen_now);
+  const cv::Rect view = seen_now & cells_;
   mosaic_centre_ = mosaic_centre;
   const retina::Pose2 frame_T_mosaic = mosaic_T_frame.inverse();
   const Eigen::Vector2d frame_centre((frame.width - 1) / 2.0, (frame.height - 1) / 2.0);
@@ -188,16 +202,16 @@ std::optional<cv::Point> PublishedMap::mostUrgent(const Mosaic& mosaic)
   return found;
 }
 
-bool PublishedMap::begin(const Mosaic& mosaic, const cv::Point& at)
+void PublishedMap::begin(const Mosaic& mosaic, const cv::Point& at)
 {
   state(at) = stateNow(mosaic, at);
   detector_.begin(mosaic, at);
-  return true;
 }
 
 void PublishedMap::slice(const Mosaic& mosaic)
 {
-  if (mosaic.empty() || !grow(mosaic.bounds())) return;
+  if (mosaic.empty()) return;
+  grow(mosaic.bounds());
   constexpr std::int64_t kMillion = 1000000;
   for (std::int64_t left = kMillion * options_.slice_work; left > 0;) {
     if (!detector_.isBusy()) {
@@ -212,7 +226,8 @@ void PublishedMap::slice(const Mosaic& mosaic)
 
 void PublishedMap::finish(const Mosaic& mosaic)
 {
-  if (mosaic.empty() || !grow(mosaic.bounds())) return;
+  if (mosaic.empty()) return;
+  grow(mosaic.bounds());
   const auto complete = [&] {
     while (detector_.step() > 0) {
     }

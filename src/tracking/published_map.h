@@ -51,7 +51,7 @@ struct PublishedMapOptions {
 /// order of the slices. Cells are mosaic px: one frame px. Never throws; memory is taken when the map grows.
 class PublishedMap {
  public:
-  /// Cells a side at most; what lies farther off is not published.
+  /// Cells a side at most; what lies farther off is not published (`isCutOff`), what lies within stays in work.
   static constexpr int kLargestSide = 8192;
 
   explicit PublishedMap(const PublishedMapOptions& options = {});
@@ -72,6 +72,8 @@ class PublishedMap {
 
   /// Full-resolution px of the map frame; `um_per_px` is left to the program.
   const retina::VesselMap& map() const { return map_; }
+  /// Whether retina was seen that the map has no room for.
+  bool isCutOff() const { return cut_off_; }
 
  private:
   struct BlockState {
@@ -82,11 +84,11 @@ class PublishedMap {
     bool looked_at = false;
   };
 
-  bool grow(const cv::Rect& cells);
+  void grow(const cv::Rect& cells);
   std::optional<cv::Point> mostUrgent(const Mosaic& mosaic);
   double urgency(const Mosaic& mosaic, const cv::Point& at) const;
   BlockState stateNow(const Mosaic& mosaic, const cv::Point& at) const;
-  bool begin(const Mosaic& mosaic, const cv::Point& at);
+  void begin(const Mosaic& mosaic, const cv::Point& at);
   void finishBlock();
   void publish(const cv::Rect& cells);
   void place();
@@ -96,6 +98,7 @@ class PublishedMap {
   PublishedMapOptions options_;
   MapVesselDetector detector_;
   cv::Rect cells_;  // of the map, mosaic px, whole blocks
+  bool cut_off_ = false;
   std::vector<BlockState> states_;
   cv::Mat_<std::int8_t> log_odds_;
   cv::Mat_<std::uint8_t> calibre_;

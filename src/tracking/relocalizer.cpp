@@ -78,6 +78,8 @@ class Relocalizer::Steps {
  private:
   void growTo(double radius_px);
   int radiusInCells() const;
+  int margin() const;
+  void chooseCells(const OccupancyMap& map);
   double budget() const;
   void layGrid(const OccupancyMap& map, const Pose2& last_pose);
   int chooseSector();
@@ -111,13 +113,24 @@ int Relocalizer::Steps::radiusInCells() const
   return static_cast<int>(std::ceil(kSlack * radius_px_ / cell_px_)) + 1;
 }
 
+int Relocalizer::Steps::margin() const { return static_cast<int>((1.0 + kShareOutside) * radiusInCells()) + 2; }
+
+// As fine as the views allow, and the memory: a few points far out must not ask for gigabytes.
+void Relocalizer::Steps::chooseCells(const OccupancyMap& map)
+{
+  reduction_ = std::max(1, static_cast<int>(std::ceil(radius_px_ / (map.cellSize() * kMostRadius_cells))));
+  for (;; ++reduction_) {
+    cell_px_ = map.cellSize() * reduction_;
+    const cv::Rect area = WholeMapTables::areaOf(map.knownCells(), reduction_, margin());
+    if (std::int64_t{area.width} * area.height <= WholeMapTables::kMostCells) return;
+  }
+}
+
 bool Relocalizer::Steps::prepare(const OccupancyMap& map)
 {
   if (map.empty() || radius_px_ == 0.0) return map.empty();
-  reduction_ = std::max(1, static_cast<int>(std::ceil(radius_px_ / (map.cellSize() * kMostRadius_cells))));
-  cell_px_ = map.cellSize() * reduction_;
-  const int margin = static_cast<int>((1.0 + kShareOutside) * radiusInCells()) + 2;
-  return whole_.update(map, reduction_, margin, std::int64_t{options_.budget} * 500);
+  chooseCells(map);
+  return whole_.update(map, reduction_, margin(), std::int64_t{options_.budget} * 500);
 }
 
 // Vector operations that a call may take on tables of this size.

@@ -14,13 +14,17 @@ std::uint8_t larger(std::uint8_t a, std::uint8_t b) { return std::max(a, b); }
 
 }  // namespace
 
-bool WholeMapTables::update(const OccupancyMap& map, int reduction, int margin, std::int64_t operations)
+cv::Rect WholeMapTables::areaOf(const cv::Rect& known, int reduction, int margin)
 {
-  const cv::Rect& known = map.knownCells();
   const cv::Point first(floorDivide(known.x, reduction) - margin, floorDivide(known.y, reduction) - margin);
   const cv::Point last(floorDivide(known.x + known.width - 1, reduction) + margin,
                        floorDivide(known.y + known.height - 1, reduction) + margin);
-  const cv::Rect area(first, last + cv::Point(1, 1));
+  return {first, last + cv::Point(1, 1)};
+}
+
+bool WholeMapTables::update(const OccupancyMap& map, int reduction, int margin, std::int64_t operations)
+{
+  const cv::Rect area = areaOf(map.knownCells(), reduction, margin);
   const int bands = (area.height + kBandRows - 1) / kBandRows;
   if (!coversOnly(area, reduction)) {
     area_ = area;
@@ -54,7 +58,7 @@ cv::Rect WholeMapTables::rowsOf(int band) const
 bool WholeMapTables::isCurrent(const OccupancyMap& map, int band) const
 {
   const std::uint32_t made = made_[static_cast<std::size_t>(band)];
-  if (made == 0) return false;
+  if (made == 0 || made < map.clearedAt()) return false;
   const cv::Rect rows = rowsOf(band);
   const int first = floorDivide((area_.y + rows.y) * reduction_, OccupancyMap::kTile);
   const int last = floorDivide((area_.y + rows.y + rows.height) * reduction_ - 1, OccupancyMap::kTile);

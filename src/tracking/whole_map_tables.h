@@ -15,6 +15,11 @@ namespace eyeslam::tracking {
 /// cells.
 class WholeMapTables {
  public:
+  /// Cells that the tables should not exceed: 3 bytes each, so 50 MB. Callers choose the reduction for it.
+  static constexpr std::int64_t kMostCells = 1 << 24;
+
+  /// What the tables cover, their own cells. @param known  cells of the map
+  static cv::Rect areaOf(const cv::Rect& known, int reduction, int margin);
   /// Brings the tables closer to the map.
   /// @param margin      cells of the tables around the known rectangle
   /// @param operations  budget of this call in vector operations; at least one band is made

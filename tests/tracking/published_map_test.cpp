@@ -271,5 +271,26 @@ TEST(PublishedMap, RestsWhenNothingChanged)
   EXPECT_EQ(map.map().version, version);
 }
 
+TEST(PublishedMap, SaysThatItIsCutOffAndWorksOnWithinItsLimit)
+{
+  const Retina retina([](double, double) { return 1.0; }, 2.0);
+  PublishedMap map;
+  map.start(kPerCell);
+  retina.countView(map);
+  EXPECT_FALSE(map.isCutOff());
+  const int first_width = map.map().width;
+  for (const double far_px : {5000.0, 9000.0, 12000.0, -4000.0}) {
+    retina.countView(map, {far_px, 0.0, 0.0, 1.0});
+    EXPECT_LE(map.map().width, PublishedMap::kLargestSide) << far_px;
+  }
+  EXPECT_TRUE(map.isCutOff());
+  EXPECT_EQ(map.map().width, PublishedMap::kLargestSide);
+  EXPECT_GT(map.map().width, first_width) << "what there is room for is taken in";
+  const std::size_t at = cellAt(map.map(), kWidth / 2.0, kHeight / 2.0);
+  const int before = map.map().seen[at];
+  retina.countView(map);
+  EXPECT_EQ(map.map().seen[at], before + 1) << "not frozen";
+}
+
 }  // namespace
 }  // namespace eyeslam::tracking

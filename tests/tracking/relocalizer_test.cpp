@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <random>
 
+#include "eyeslam/tracking/whole_map_tables.h"
 #include "support/allocation_counter.h"
 #include "support/exhaustive_search.h"
 #include "support/vessel_scenes.h"
@@ -152,6 +154,46 @@ TEST(Relocalizer, NoticesWhenTheMapHasGrown)
   const Pose2 truth{900.0, 0.0, 0.05, 1.0};
   const ScanPoints points = support::seenFrom(truth, moved, 400, 304, 500, 0.5, 0.1, scene.random);
   expectNear(scene.relocalizer.search(points, scene.map, {}), truth);
+}
+
+TEST(Relocalizer, ForgetsAMapThatWasClearedAndGrewToTheSameRectangleAgain)
+{
+  Scene scene(23, 40, 700.0);
+  const ScanPoints view = scene.viewFrom({});
+  ASSERT_EQ(scene.relocalizer.search(view, scene.map, {}).reason, Reason::none);
+  const cv::Rect known = scene.map.knownCells();
+  scene.map.clear();
+  const ScanPoints corners{
+      {kCell_px * static_cast<float>(known.x + 1.5), kCell_px * static_cast<float>(known.y + 1.5)},
+      {kCell_px * static_cast<float>(known.br().x - 1.5), kCell_px * static_cast<float>(known.br().y - 1.5)}};
+  support::saturate(scene.map, corners);
+  ASSERT_EQ(scene.map.knownCells(), known);
+  const MatchResult found = scene.relocalizer.search(view, scene.map, {});
+  EXPECT_NE(found.reason, Reason::none);
+  EXPECT_NE(found.reason, Reason::searching) << "it must not have looked at the old map's tables";
+}
+
+// 4 KB pages in memory now.
+std::int64_t residentPages()
+{
+  std::int64_t size = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> size >> resident;
+  return resident;
+}
+
+TEST(Relocalizer, NeedsNoGigabytesForPointsAtTheEndsOfTheMapsReach)
+{
+  Scene scene(24, 60, 900.0);
+  const float far_px = 2.0F * (OccupancyMap::kReach_cells - 2);
+  support::saturate(scene.map, {{far_px, far_px}, {-far_px, -far_px}});
+  const cv::Rect finest = WholeMapTables::areaOf(scene.map.knownCells(), 1, 0);
+  ASSERT_GT(std::int64_t{finest.width} * finest.height, 10 * WholeMapTables::kMostCells) << "it would take 3 GB";
+  const std::int64_t before = residentPages();
+  const Pose2 truth{150.0, -90.0, 0.05, 1.0};
+  int calls = 0;
+  const MatchResult found = searchUntilAnswered(scene, truth, 60, calls);
+  if (found.reason == Reason::none) expectNear(found, truth);
+  EXPECT_LT(residentPages() - before, 200 * 256) << "200 MB: four bytes for each of the most cells, and the points";
 }
 
 TEST(Relocalizer, FindsNothingThatIsNotThere)
