@@ -45,7 +45,14 @@ class Localizer {
 
  private:
   struct View;  // what all searches of one frame share
-  bool confirm(const View& view, const retina::Pose2& start, double score);
+  Refinement align(const View& view, const retina::Pose2& start);
+  bool keep(const View& view, const Refinement& refined, double score);
+  bool confirm(const View& view, const retina::Pose2& start, double score)
+  {
+    return keep(view, align(view, start), score);
+  }
+  bool isConfirmed(const Refinement& refined) const;
+  bool decide(const View& view);
   bool matchNear(const View& view);
   bool matchWide(const View& view);
   bool matchDense(const View& view);
@@ -63,7 +70,8 @@ class Localizer {
   ScanPoints few_;
   Localization best_;
   double running_ncc_ = 0.0;
-  int lost_frames_ = 0;  // refused here since the last confirmed one
+  int lost_frames_ = 0;   // refused here since the last confirmed one
+  bool refuted_ = false;  // lost for long, and the mosaic shows that vessel points cannot tell the place
 };
 
 }  // namespace eyeslam::tracking

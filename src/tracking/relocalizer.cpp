@@ -64,11 +64,13 @@ class Relocalizer::Steps {
   void reserve(const cv::Size& frame)
   {
     places_.reserve(kMostPlaces);
+    found_again_.reserve(kMostPlaces);
     growTo(std::hypot(frame.width, frame.height) / 2.0);
     matcher_.reserve(frame);
   }
   bool prepare(const OccupancyMap& map);
   MatchResult search(const ScanPoints& points, const OccupancyMap& map, const Pose2& last_pose);
+  const std::vector<MatchResult>& places() const { return found_again_; }
   void restart()
   {
     turn_ = 0;
@@ -97,6 +99,7 @@ class Relocalizer::Steps {
   PoseGrid grid_;
   BlockSearch blocks_;
   std::vector<GridPose> places_;
+  std::vector<MatchResult> found_again_;
   int turn_ = 0;
   int narrowing_ = 1;
 };
@@ -201,6 +204,7 @@ void Relocalizer::Steps::listPlaces()
 MatchResult Relocalizer::Steps::search(const ScanPoints& points, const OccupancyMap& map, const Pose2& last_pose)
 {
   MatchResult nothing{Reason::too_few_points, last_pose, 0.0, Eigen::Matrix3d::Zero()};
+  found_again_.clear();
   points_.assign(points, options_.most_points);
   if (points_.size() < options_.min_points) return nothing;
   nothing.reason = Reason::poor_match;
@@ -228,6 +232,7 @@ MatchResult Relocalizer::Steps::findAgain(const ScanPoints& points, const Occupa
     const double half_px = 1.5 * cell_px_ + map.cellSize();
     const Pose2 about = grid_.pose(place.k, place.j, place.i);
     const MatchResult found = matcher_.search(points, map, {about, half_px, half_px, 1.5 * grid_.theta_step});
+    found_again_.push_back(found);
     second_score = std::max(second_score, std::min(found.score, best.score));
     if (found.score > best.score) best = found;
   }
@@ -249,6 +254,7 @@ Relocalizer& Relocalizer::operator=(Relocalizer&&) noexcept = default;
 void Relocalizer::reserve(const cv::Size& frame) { steps_->reserve(frame); }
 bool Relocalizer::prepare(const OccupancyMap& map) noexcept { return steps_->prepare(map); }
 void Relocalizer::restart() noexcept { steps_->restart(); }
+const std::vector<MatchResult>& Relocalizer::places() const noexcept { return steps_->places(); }
 
 MatchResult Relocalizer::search(const ScanPoints& points, const OccupancyMap& map, const Pose2& last_pose) noexcept
 {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "eyeslam/retina/options.h"
 #include "eyeslam/tracking/match_result.h"
@@ -81,6 +82,9 @@ class Relocalizer {
   /// @return  the pose; or too_few_points, ambiguous, poor_match; or searching, when the budget ended before an answer
   ///          (the best place so far is in the result, not to be trusted unverified)
   MatchResult search(const ScanPoints& points, const OccupancyMap& map, const retina::Pose2& last_pose) noexcept;
+  /// What the last search compared at the end: its best place and up to three others that scored nearly as much, each
+  /// found again among the map's own cells. Of use when it was ambiguous: other evidence may decide.
+  const std::vector<MatchResult>& places() const noexcept;
   /// Starts the next search from the nearest angles again; call it when the view was found.
   void restart() noexcept;
 

@@ -38,6 +38,8 @@ struct LocalizerOptions {
   int wide_steps = 8;
   int wide_points = 250;
   int sharp_points = 100;
+  int undecided_frames = 4;
+  double rival_ncc = 0.7;
   double scale_sigma = 0.002;
 
   template <class Self, class Visitor>
@@ -62,6 +64,12 @@ struct LocalizerOptions {
         "sharp_points", self.sharp_points, Range{0, 5000}, "points",
         "with fewer the frame is smeared, and the dense search replaces that of the whole map; source: rendered "
         "saccades, smeared frames have up to 40 points, sharp ones 400 and more");
+    visitor.field("undecided_frames", self.undecided_frames, Range{1, 1000}, "frames",
+                  "lost so long, the mosaic decides between places whose vessels fit alike, or is searched without "
+                  "them; source: our choice, the eye moves on and most ambiguities pass");
+    visitor.field("rival_ncc", self.rival_ncc, Range{0.0, 1.0}, "of the best place's",
+                  "a second place that correlates as well leaves it undecided; source: wrong places of the rendered "
+                  "retinas reach 0.2, repeated patterns 1");
     visitor.field("scale_sigma", self.scale_sigma, Range{1e-5, 1.0}, "",
                   "how far the scale may differ from the predicted, once it is free; source: tracker study 2.12");
   }

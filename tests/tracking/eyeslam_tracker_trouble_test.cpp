@@ -116,6 +116,35 @@ TEST(EyeSlamTracker, NeverTracksTheDarkAndIsBackInTheFirstVisibleFrame)
   }
 }
 
+// Its vessels fit elsewhere as well, in every frame alike; what lies between them does not.
+TEST(EyeSlamTracker, ComesBackWhereTheVesselsAloneFitAtSeveralPlaces)
+{
+  for (const cv::Point jump : {cv::Point(20, 100), cv::Point(30, 110), cv::Point(20, 90)}) {
+    SCOPED_TRACE(jump);
+    EyeSlamTracker tracker;
+    int frame = 0;
+    for (; frame < 20; ++frame) tracker.track(view(drift(frame), frame));
+    for (int dark = 0; dark < 15; ++dark) tracker.track(kDark);
+    const int last = frame + 12;
+    while (frame < last && !tracker.track(view(jump, frame)).tracked) ++frame;
+    expectAt(tracker.getResult(), jump, 2.0 * kSubPixel_px);
+  }
+}
+
+// The same retina twice, side by side: no picture of it tells which of the two is seen.
+TEST(EyeSlamTracker, TakesNoneOfTwoPlacesThatAreTheSame)
+{
+  constexpr int kPeriod = 640;
+  cv::Mat twice;
+  const cv::Mat once = smallRetina().view({kPeriod, kSmall.height + 60}, {0, 0}, 0);
+  cv::hconcat(once, once, twice);
+  const auto at = [&](int x, int y) { return twice(cv::Rect(x, y, kSmall.width, kSmall.height)).clone(); };
+  EyeSlamTracker tracker;
+  for (int x = 0; x <= 2 * kPeriod - kSmall.width; x += 8) ASSERT_TRUE(tracker.track(at(x, 0)).tracked) << x;
+  for (int dark = 0; dark < 15; ++dark) tracker.track(kDark);
+  for (int frame = 0; frame < 30; ++frame) EXPECT_FALSE(tracker.track(at(60, 40)).tracked) << frame;
+}
+
 struct Nothing {
   std::string name;
   cv::Scalar colour;
