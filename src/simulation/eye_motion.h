@@ -44,8 +44,10 @@ struct EyeMotionOptions {
                   "middle frequency of the drift; source: rendered sequences, 1-5 px a frame");
     visitor.field("rotation_deg", self.rotation_deg, Range{0, 45}, "deg",
                   "amplitude of the slow rotation; source: rendered sequences, 2-11 deg");
-    visitor.field("tremor_px", self.tremor_px, Range{0, 20}, "px", "amplitude of the fine tremor");
-    visitor.field("tremor_hz", self.tremor_hz, Range{1, 15}, "Hz", "middle frequency of the tremor");
+    visitor.field("tremor_px", self.tremor_px, Range{0, 20}, "px",
+                  "amplitude of the fine tremor; source: our choice, below what a view shows");
+    visitor.field("tremor_hz", self.tremor_hz, Range{1, 15}, "Hz",
+                  "middle frequency of the tremor; source: our choice, under half the frame rate");
     visitor.field("breath_px", self.breath_px, Range{0, 100}, "px",
                   "amplitude at 0.25 Hz; source: facts, D: 50-300 um proposed");
     visitor.field("pulse_px", self.pulse_px, Range{0, 100}, "px", "amplitude at 1.1 Hz; source: facts, D");
@@ -57,16 +59,22 @@ struct EyeMotionOptions {
                   "largest jerk; source: 60 px in vivo, 120 px ex vivo, saccades 260 px");
     visitor.field("jerk_ms", self.jerk_ms, Range{5, 2000}, "ms",
                   "how long a jerk lasts; source: rendered sequences, 4 frames, saccades 1-2");
-    visitor.field("jerk_rotation_deg", self.jerk_rotation_deg, Range{0, 45}, "deg", "largest turn of a jerk");
-    visitor.field("reach_px", self.reach_px, Range{0, 5000}, "px", "jerks beyond this distance from the start go back");
+    visitor.field("jerk_rotation_deg", self.jerk_rotation_deg, Range{0, 45}, "deg",
+                  "largest turn of a jerk; source: our choice");
+    visitor.field(
+        "reach_px", self.reach_px, Range{0, 5000}, "px",
+        "jerks beyond this distance from the start go back; source: our choice, keeps the view on the retina");
     visitor.field("excursion_px", self.excursion_px, Range{0, 5000}, "px",
                   "how far the view leaves and returns, 0 = never; source: rendered sequences, 600 px");
-    visitor.field("excursion_period_s", self.excursion_period_s, Range{0.5, 1000}, "s", "one way out and back");
+    visitor.field("excursion_period_s", self.excursion_period_s, Range{0.5, 1000}, "s",
+                  "one way out and back; source: our choice");
     visitor.field("scale_change", self.scale_change, Range{0, 0.5}, "",
                   "amplitude of the magnification; source: rendered sequences, 0.06");
-    visitor.field("scale_period_s", self.scale_period_s, Range{0.5, 1000}, "s", "one period of the magnification");
-    visitor.field("warp_px", self.warp_px, Range{0, 50}, "px",
-                  "smooth warp at half the view's width from its centre, where it vanishes with its slope");
+    visitor.field("scale_period_s", self.scale_period_s, Range{0.5, 1000}, "s",
+                  "one period of the magnification; source: our choice");
+    visitor.field(
+        "warp_px", self.warp_px, Range{0, 50}, "px",
+        "smooth warp at half the view's width from its centre, where it vanishes with its slope; source: our choice");
   }
 };
 

@@ -23,7 +23,7 @@ struct FundusPhotographOptions {
         "surround_level", self.surround_level, Range{0.0, 255.0}, "grey levels",
         "darker places at the picture's edge are the camera's black surround; source: HRF, surround under 10");
     visitor.field("margin_um", self.margin_um, Range{0.0, 2000.0}, "um",
-                  "width of the dim seam cut off beside the surround");
+                  "width of the dim seam cut off beside the surround; source: our choice, by eye");
   }
 };
 

@@ -29,15 +29,19 @@ struct IlluminationOptions {
     using retina::Range;
     visitor.field("gain", self.gain, Range{0.05, 4.0}, "",
                   "brightness of white under the full light; source: rendered sequences, red 140-180");
-    visitor.field("cone_px", self.cone_px, Range{50, 10000}, "px", "sigma of the light cone");
-    visitor.field("floor", self.floor, Range{0, 1}, "of the cone's middle", "light far from the cone");
-    visitor.field("wander_px", self.wander_px, Range{0, 400}, "px", "how far the light pipe moves");
+    visitor.field("cone_px", self.cone_px, Range{50, 10000}, "px",
+                  "sigma of the light cone; source: our choice, by eye");
+    visitor.field("floor", self.floor, Range{0, 1}, "of the cone's middle",
+                  "light far from the cone; source: our choice, by eye");
+    visitor.field("wander_px", self.wander_px, Range{0, 400}, "px", "how far the light pipe moves; source: our choice");
     visitor.field("rim_radius_px", self.rim_radius_px, Range{0, 10000}, "px",
                   "radius of the round field, 0 = no rim; source: rendered sequences, 397-444");
-    visitor.field("rim_softness_px", self.rim_softness_px, Range{1, 200}, "px", "width of the rim's edge");
-    visitor.field("rim_offset_px", self.rim_offset_px, Range{0, 200}, "px",
-                  "largest offset of the field from the image centre");
-    visitor.field("blackouts", self.blackouts, Range{0, 100}, "", "how often the light goes out");
+    visitor.field("rim_softness_px", self.rim_softness_px, Range{1, 200}, "px",
+                  "width of the rim's edge; source: our choice, by eye");
+    visitor.field(
+        "rim_offset_px", self.rim_offset_px, Range{0, 200}, "px",
+        "largest offset of the field from the image centre; source: our choice, by eye");
+    visitor.field("blackouts", self.blackouts, Range{0, 100}, "", "how often the light goes out; source: our choice");
     visitor.field("blackout_shortest_s", self.blackout_shortest_s, Range{0.05, 100}, "s", "source: rendered sequences");
     visitor.field("blackout_longest_s", self.blackout_longest_s, Range{0.05, 100}, "s", "source: rendered sequences");
   }

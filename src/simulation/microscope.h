@@ -27,15 +27,20 @@ struct OpticsOptions {
   static void visit(Self& self, Visitor& visitor)
   {
     using retina::Range;
-    visitor.field("exposure_ms", self.exposure_ms, Range{0, 1000}, "ms", "how long a frame collects light");
+    visitor.field("exposure_ms", self.exposure_ms, Range{0, 1000}, "ms",
+                  "how long a frame collects light; source: our choice, half a frame at 30 Hz");
     visitor.field("defocus_px", self.defocus_px, Range{0, 20}, "px of a view 800 px wide",
-                  "sigma of the blur of the retina");
+                  "sigma of the blur of the retina; source: our choice, by eye");
     visitor.field("defocus_change_px", self.defocus_change_px, Range{0, 20}, "px of a view 800 px wide",
-                  "by which it slowly changes");
-    visitor.field("veil", self.veil, Range{0, 1}, "of white", "stray light over the whole field");
-    visitor.field("white_red", self.white_red, Range{0, 4}, "", "gain of red");
-    visitor.field("white_green", self.white_green, Range{0, 4}, "", "gain of green");
-    visitor.field("white_blue", self.white_blue, Range{0, 4}, "", "gain of blue");
+                  "by which it slowly changes; source: our choice");
+    visitor.field("veil", self.veil, Range{0, 1}, "of white",
+                  "stray light over the whole field; source: our choice, by eye");
+    visitor.field("white_red", self.white_red, Range{0, 4}, "",
+                  "gain of red; source: our choice, by eye");
+    visitor.field("white_green", self.white_green, Range{0, 4}, "",
+                  "gain of green; source: our choice, by eye");
+    visitor.field("white_blue", self.white_blue, Range{0, 4}, "",
+                  "gain of blue; source: our choice, by eye");
   }
 };
 

@@ -22,13 +22,16 @@ struct ProceduralFundusOptions {
   static void visit(Self& self, Visitor& visitor)
   {
     using retina::Range;
-    visitor.field("um_per_px", self.um_per_px, Range{0.5, 100}, "um", "width of a pixel");
+    visitor.field("um_per_px", self.um_per_px, Range{0.5, 100}, "um",
+                  "width of a pixel; source: our choice, finer than any view");
     visitor.field("width_mm", self.width_mm, Range{1, 40}, "mm",
                   "size of the picture; source: HRF photographs, 14.0 x 9.4 mm");
-    visitor.field("height_mm", self.height_mm, Range{1, 40}, "mm", "size of the picture");
+    visitor.field("height_mm", self.height_mm, Range{1, 40}, "mm", "size of the picture; source: our choice");
     visitor.field("texture", self.texture, Range{0, 4}, "",
                   "strength of pigment and nerve fibres; source: HRF, 12 % of green");
-    visitor.field("choroid", self.choroid, Range{0, 4}, "", "strength of the choroid's vessels under the retina");
+    visitor.field(
+        "choroid", self.choroid, Range{0, 4}, "",
+        "strength of the choroid's vessels under the retina; source: our choice, by eye");
     visitor.group("vessels", self.vessels);
   }
 };

@@ -19,9 +19,10 @@ struct SensorOptions {
   static void visit(Self& self, Visitor& visitor)
   {
     using retina::Range;
-    visitor.field("read_noise", self.read_noise, Range{0, 64}, "grey levels", "standard deviation in the dark");
+    visitor.field("read_noise", self.read_noise, Range{0, 64}, "grey levels",
+                  "standard deviation in the dark; source: our choice, by eye");
     visitor.field("shot_noise", self.shot_noise, Range{0, 4}, "grey levels per root grey level",
-                  "noise that grows with the root of the light");
+                  "noise that grows with the root of the light; source: our choice, by eye");
     visitor.field("black", self.black, Range{0, 64}, "grey levels",
                   "offset of the darkest place; source: rendered sequences, 1-3");
   }

@@ -21,10 +21,12 @@ struct SpecularBloomsOptions {
   {
     using retina::Range;
     visitor.field("count", self.count, Range{0, 50}, "", "how many there are; source: rendered sequences, 1-4 in view");
-    visitor.field("smallest_px", self.smallest_px, Range{1, 200}, "px", "radius of the smallest white core");
-    visitor.field("largest_px", self.largest_px, Range{1, 200}, "px", "radius of the largest white core");
+    visitor.field("smallest_px", self.smallest_px, Range{1, 200}, "px",
+                  "radius of the smallest white core; source: our choice, by eye");
+    visitor.field("largest_px", self.largest_px, Range{1, 200}, "px",
+                  "radius of the largest white core; source: our choice, by eye");
     visitor.field("wander_px", self.wander_px, Range{0, 200}, "px",
-                  "how far they move: they follow the lens, not the retina");
+                  "how far they move: they follow the lens, not the retina; source: our choice");
   }
 };
 

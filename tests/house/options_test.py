@@ -29,10 +29,21 @@ def complaints(code):
                 yield f"{name}.{key} lacks its words or explanation"
 
 
+def without_source(code):
+    for name, body in STRUCT.findall(code):
+        for _, key, _, rest in CALL.findall(body):
+            if '"' in rest and "source:" not in re.sub(r'"\s*"', "", rest):
+                yield f"{name}.{key} does not say where its value is from (source: ...)"
+
+
 class Options(unittest.TestCase):
     def test_every_option_has_range_unit_and_explanation(self):
         for path in tree.files(".h", folders=("src", "apps")):
             self.assertEqual(list(complaints(tree.text(path))), [], path)
+
+    def test_every_option_of_tracker_and_simulation_names_its_source(self):
+        for path in tree.files(".h", folders=("src/tracking", "src/simulation")):
+            self.assertEqual(list(without_source(tree.text(path))), [], path)
 
     def test_planted_violations_are_found(self):
         good = ('struct AOptions {\n  double a = 1.0;\n\n  template <class Self, class V>\n'
@@ -41,6 +52,8 @@ class Options(unittest.TestCase):
         self.assertEqual(len(list(complaints(good.replace("double a = 1.0;", "double a = 1.0;\n  int b = 2;")))), 1)
         self.assertEqual(len(list(complaints(good.replace("Range{0.0, 1.0}, ", "")))), 1)
         self.assertEqual(len(list(complaints(good.replace('"px",', "")))), 1)
+        self.assertEqual(list(without_source(good)), [])
+        self.assertEqual(len(list(without_source(good.replace("source", "from")))), 1)
 
 
 if __name__ == "__main__":
