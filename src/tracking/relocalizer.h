@@ -54,8 +54,7 @@ struct RelocalizerOptions {
 ///     after as many calls as there are sectors every angle had its turn. Only a sure answer is then given, else
 ///     `searching`.
 ///   - A call whose budget ends while many places fit alike gives a sure answer or `searching`, and the next sectors
-///   are
-///     half as wide until searches come to their end again.
+///     are half as wide until searches come to their end again.
 ///   - The tables over the map are made in slices; until they are current the answer is `searching`.
 /// The grid has the map's cells for views up to 400 x 304 px; for larger views, two or more of them together, with
 /// their maximum. The answer is then found again among the map's own cells by scan matching.
