@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr int kThresholds[] = {64, 128, 192};
 constexpr double kSpots_um[] = {100.0, 200.0};
-constexpr double kMargins_um[] = {50.0, 100.0, 150.0, 200.0};
+constexpr double kMargins_um[] = {50.0, 100.0, 200.0};
 constexpr int kDarkest = 30;  // of red: the photographs are black around the retina
 
 /// From a point to the nearest vessel cell's square, by looking at every cell within `reach` cells; cells.
