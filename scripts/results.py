@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """results.py [PART...]: measures on the sequences of ../shared/sequences and writes docs/results.md.
 
-The parts: tracking, paper_method, methods, detectors; without any, all. What is not measured again is taken from
-out/results/PART.md. Errors and maps are judged by ../shared/score.py; the command of each figure stands beside it.
+The parts: tracking, paper_method, methods, detectors, guidance, plans; without any, all. What is not measured again is
+taken from out/results/PART.md. Errors and maps are judged by ../shared/score.py; the command of each figure stands beside it.
 Needs a release build.
 """
 import csv
@@ -183,7 +183,62 @@ def detectors(names):
     yield bench("detect", *(SHARED / "sequences" / name for name in names), "--period", "60")
 
 
-PARTS = {part.__name__: part for part in (tracking, paper_method, methods, detectors)}
+def centerline_tables():
+    """The vessel graph against hand-drawn masks and against the labels of the sequences."""
+    yield "## Vessel lines\n"
+    yield "The graph (`VesselGraph`) of hand-drawn masks, against the lines that other code thins these masks to, within"
+    yield "2 px; radius against the distance to the mask's wall. Wanted: 95 % both, 1 px.\n"
+    yield "```text\neyeslam-bench centerlines photographs/*_vessels.png\n```\n"
+    yield bench("centerlines", *sorted((SHARED / "photographs").glob("*_vessels.png")))
+    runs = OUT / "eyeslam"
+    tracked = [name for name in MAPPED if (runs / name / "run.json").exists()]
+    if not tracked:
+        sys.exit("results.py: the part guidance needs the runs of the part tracking")
+    yield "\nThe graph of the tracker's maps, against the labelled vessels that the map covers, within 4 px as for maps."
+    yield "Radius against the label: it has the error of the map's vessel widths. Wanted: recall 90 %, precision 85 %.\n"
+    yield f"```text\neyeslam-bench centerlines {' '.join(tracked)} --tracks OUT\n```\n"
+    yield bench("centerlines", *(SHARED / "sequences" / name for name in tracked), "--tracks", runs)
+
+
+def tracing_table():
+    """What fixtures ask of the tip while a simulated hand traces a vessel."""
+    yield "## Goals of fixtures\n"
+    yield "A simulated hand (tremor 50 to 100 um RMS an axis) traces a vessel at 0.4 mm/s on a moving retina whose pose is"
+    yield "known; 20 seeds of 20 s. Distance of tip (unaided) or goal from the vessel; what a manipulator makes of its goal is"
+    yield "the servo's error and not in it. \"In force\": nothing is handed over, and the retina is no faster than the 20 mm/s"
+    yield "that a goal may have. ± is the standard deviation of the RMS over seeds. A soft goal lies at 0.1 of the filtered"
+    yield "hand's distance up to 600 um and yields more from there on. Wanted: within 1 um of the vessel, or of that law.\n"
+    yield "```text\nsimulate_tracing\n```\n"
+    yield subprocess.run([PROGRAMS / "simulate_tracing"], check=True, capture_output=True, text=True).stdout.rstrip()
+
+
+# Each function yields lines of Markdown.
+GUIDANCE_TABLES = [centerline_tables, tracing_table]
+
+
+def guidance(names):
+    for tables in GUIDANCE_TABLES:
+        yield from tables()
+        yield ""
+
+
+def plans(names):
+    runs = OUT / "eyeslam"
+    tracked = [name for name in names if (runs / name / "run.json").exists()]
+    if not tracked:
+        sys.exit("results.py: the part plans needs the runs of the part tracking")
+    yield "## Burn plans\n"
+    yield "Every valid burn of dense plans, judged by brute force over the cells around it: disc, margin and localization"
+    yield "error against the nearest vessel cell's edge. Then what the plan cannot know: of all places where the centre of a"
+    yield "burn may lie, the share whose burn touches a *true* vessel that the map lacks, by the vessel's width, pooled over"
+    yield "the maps of like coverage (share of labelled centrelines, vessels below 30 um left out of the labels). Tracker's"
+    yield "maps: all kept frames, with cells counted as vessels from 64, 128 and 192 of 255.\n"
+    yield "```text\neyeslam-bench plan SEQUENCES/* --tracks OUT --photographs photographs\n```\n"
+    folders = [SHARED / "sequences" / name for name in tracked]
+    yield bench("plan", *folders, "--tracks", runs, "--photographs", SHARED / "photographs")
+
+
+PARTS = {part.__name__: part for part in (tracking, paper_method, methods, detectors, guidance, plans)}
 
 
 def head():
