@@ -35,6 +35,15 @@ Reason ChannelGuard::admit(const MessageHeader& header, const ReceiveTime& now, 
   return expiry && !(age <= *expiry) ? Reason::expired : Reason::none;
 }
 
+Reason ChannelGuard::admitAnyone(const MessageHeader& header, const ReceiveTime& now)
+{
+  if (!plausible(header)) return Reason::out_of_range;
+  session_ = header.session;
+  clock_.forget();
+  clock_.follows(header.utime_sent, now.monotonic);
+  return Reason::none;
+}
+
 bool ChannelGuard::mayHear(std::int64_t session) const
 {
   return open_ && std::find(past_.begin(), past_.end(), session) == past_.end();
@@ -46,7 +55,6 @@ void ChannelGuard::listenTo(std::int64_t session)
   session_ = session;
   lost_ += order_.lost();
   order_ = SequenceWindow();
-  clock_.forget();
 }
 
 void ChannelGuard::acceptNewSession()

@@ -34,6 +34,10 @@ class ChannelGuard {
   ///         expired
   retina::Reason admit(const MessageHeader& header, const ReceiveTime& now, std::optional<double> expiry);
 
+  /// For channels without a tag, on which several speak and nothing moves or fires: only a possible header is asked
+  /// for, and the message counts as not delayed. @return none or out_of_range
+  retina::Reason admitAnyone(const MessageHeader& header, const ReceiveTime& now);
+
   /// A human re-armed: whoever speaks next is heard from then on, and a stepped clock is learnt anew. A session that
   /// was replaced is never heard again.
   void acceptNewSession();
@@ -41,7 +45,7 @@ class ChannelGuard {
   /// Why nothing is heard until a human re-arms: clock_stepped, or none.
   retina::Reason fault() const { return fault_; }
 
-  /// The session that is listened to; 0 before the first message.
+  /// The session that is listened to, the last one heard where anyone is; 0 before the first message.
   std::int64_t session() const { return session_; }
   std::int64_t lost() const { return lost_ + order_.lost(); }
   /// When the sender's clock showed `utime`, by the receiver's monotonic one; us. Holds for the session listened to.

@@ -74,7 +74,8 @@ Reason ChannelReceiver::check(const std::uint8_t* bytes, std::size_t size) const
 Reason ChannelReceiver::admit(const MessageHeader& header, std::optional<double> expiry)
 {
   const ReceiveTime now = link_.receivedAt(header);
-  if (const Reason why = guard_.admit(header, now, expiry); why != Reason::none) return why;
+  const Reason why = has_tag_ ? guard_.admit(header, now, expiry) : guard_.admitAnyone(header, now);
+  if (why != Reason::none) return why;
   header_ = header;
   expiry_ = expiry;
   last_received_ = now.monotonic;

@@ -52,7 +52,7 @@ class ChannelReceiver {
 
   /// Why nothing is heard until a human re-arms; none when all is well.
   retina::Reason fault() const { return guard_.fault(); }
-  /// The session listened to, the first one heard; 0 before.
+  /// The session listened to, the first one heard (the last one on a channel without a tag); 0 before.
   std::int64_t session() const { return guard_.session(); }
   /// Only a human act calls this: the next session heard may take the place of the present one.
   void acceptNewSession() { guard_.acceptNewSession(); }
@@ -98,7 +98,8 @@ class ChannelReceiver {
 ///   link.drain({monotonic_now, utime_now});
 ///   if (states.silence(monotonic_now) < 50'000) use(states.value());
 ///
-/// The thread that drains the link is the only one that may use it; the link must outlive it.
+/// The thread that drains the link is the only one that may use it; the link must outlive it. The first subscription of
+/// a link starts LCM's receiving thread, with the scheduling class that its caller has then: set that before.
 template <class Message>
 class Subscription : public ChannelReceiver {
  public:

@@ -37,7 +37,7 @@ class FixedMessage : public ::testing::Test {
 };
 using FixedTypes = ::testing::Types<laser_command_t, laser_state_t, micron_command_t, micron_state_t, operator_t,
                                     registration_t, retina_pose_t, servo_status_t, tool_tip_t>;
-TYPED_TEST_SUITE(FixedMessage, FixedTypes);
+TYPED_TEST_SUITE(FixedMessage, FixedTypes, );
 
 TYPED_TEST(FixedMessage, IsOfFixedSizeBelow1400Bytes)
 {

@@ -54,6 +54,14 @@ TEST(SenderClock, BearsAStallOfTheReceiverAndABacklogAtTheStart)
   EXPECT_LT(stream.error(), kMillisecond);
 }
 
+TEST(SenderClock, BearsAFirstMessageThatWaitedForItsReader)
+{
+  Stream stream;
+  EXPECT_TRUE(stream.send(kMillisecond, 80 * kMillisecond));
+  EXPECT_TRUE(stream.send(100 * kMillisecond, 0));
+  EXPECT_TRUE(stream.sendMany(100, kMillisecond, 0));
+}
+
 TEST(SenderClock, FollowsADriftOf100PpmForAnHour)
 {
   for (const double drift : {100e-6, -100e-6}) {

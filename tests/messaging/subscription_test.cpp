@@ -267,6 +267,25 @@ TEST(Subscription, HandsEveryAcceptedMessageToItsHandler)
   EXPECT_EQ(notes, (std::vector<std::string>{"a", "b", "c"}));
 }
 
+// MARK and BURN_PLAN have several senders; what moves or fires has a tag, and one.
+TEST(Subscription, HearsAnyoneWhereNothingMoves)
+{
+  Link link("memq://", 1, {});
+  Subscription<mark_t> marks(link);
+  mark_t mark{};
+  for (const std::int64_t session : {5, 6, 5}) {
+    mark.session = session;
+    mark.utime = 700;
+    mark.utime_sent = 1000;
+    const Bytes bytes = support::encodedMessage(mark);
+    link.send("MARK", bytes.data(), bytes.size());
+    link.drain({2000, 1000});
+    EXPECT_EQ(marks.session(), session);
+    EXPECT_EQ(marks.age(2500), 800);
+  }
+  EXPECT_EQ(marks.accepted(), 3);
+}
+
 // LCM aborts the process at the next message when an exception has unwound through it.
 TEST(Subscription, LetsNoExceptionOfItsHandlerOut)
 {
