@@ -35,7 +35,7 @@ struct MotionLimiterOptions {
 };
 
 /// The last word on motion. Whatever comes in, NaN and infinity included:
-///  - the goal's speed and acceleration stay within their limits, and it stops where it is wanted without overshoot;
+///  - the goal's speed and acceleration stay within their limits, and it stops where it is wanted, within 2 %;
 ///  - the deflection stays within the reach, and changes no faster than the actuator can follow.
 /// Nothing moves without a finite time step; a longer one than `kLongestStep_s` counts as that. Manipulator frame, m.
 /// Source: loop study, section 2.7. Never throws, never allocates.

@@ -20,6 +20,7 @@ constexpr double kSlowFrames_s = 1.0 / 30.0;
 constexpr double kFastFrames_s = 1.0 / 120.0;
 constexpr double kIntervalShare = 0.1;            // of a new interval in the running mean
 constexpr double kLongestInterval = 3.0;          // times the mean: a longer one is a gap, not the camera's rate
+constexpr double kMissing = 1.5;             // times the mean: a frame was left out
 constexpr double kHistory_s = 0.5;                // of the port, and the longest gap between poses that is bridged
 constexpr std::int64_t kCalm_us = 100'000;        // a jump within this of another is no outlier: the eye is jumping
 constexpr double kTurnVelocity = 20.0 * kDegree;  // rad/s, of the eye about its line of sight; source: assumption
@@ -133,8 +134,9 @@ RetinaPredictor::Filters RetinaPredictor::jumped(const Filters& filters, const S
 }
 
 // The next frame decides whether a jump was one. Until then: where frames are slow the jump is believed, because the
-// tip would stay behind; where they are fast it is not, because outliers are more frequent than jumps.
-Reason RetinaPredictor::decide(const Sight& sight, std::int64_t utime) noexcept
+// tip would stay behind; where they are fast it is not, because outliers are more frequent than jumps. But a frame that
+// was missing just before, refused for its blur, speaks for a jump, and so does another jump a moment ago.
+Reason RetinaPredictor::decide(const Sight& sight, std::int64_t utime, double passed) noexcept
 {
   const Verdict here = judge(filters_, sight);
   surprise_ = here.surprise;
@@ -149,7 +151,8 @@ Reason RetinaPredictor::decide(const Sight& sight, std::int64_t utime) noexcept
     doubtful_ = false;
     return Reason::none;
   }
-  const bool waits = !doubtful_ && interval_s_ < options_.doubt_ms * kMilli && utime - jump_utime_ > kCalm_us;
+  const bool expected = passed > kMissing * interval_s_ || utime - jump_utime_ <= kCalm_us;
+  const bool waits = !doubtful_ && !expected && interval_s_ < options_.doubt_ms * kMilli;
   other_ = jumped(filters_, sight);
   if (!waits) std::swap(filters_, other_);
   doubtful_ = true;
@@ -185,7 +188,7 @@ Reason RetinaPredictor::correct(const SeenPose& seen, std::int64_t now) noexcept
   if (passed < kLongestInterval * interval_s_) interval_s_ += kIntervalShare * (passed - interval_s_);
   advance(filters_, passed);
   if (doubtful_) advance(other_, passed);
-  return decide(sight(seen), seen.utime);
+  return decide(sight(seen), seen.utime, passed);
 }
 
 PredictedPose RetinaPredictor::at(std::int64_t utime) const noexcept

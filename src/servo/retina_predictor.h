@@ -82,7 +82,7 @@ class RetinaPredictor {
   Verdict judge(const Filters& filters, const Sight& sight) const noexcept;
   void update(Filters& filters, const Sight& sight) const noexcept;
   Filters jumped(const Filters& filters, const Sight& sight) const noexcept;
-  retina::Reason decide(const Sight& sight, std::int64_t utime) noexcept;
+  retina::Reason decide(const Sight& sight, std::int64_t utime, double passed) noexcept;
   void begin(const Sight& sight) noexcept;
   void dropSilentPort(std::int64_t now) noexcept;
 
