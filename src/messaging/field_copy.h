@@ -3,11 +3,12 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <tuple>
+#include <type_traits>
 
 #include "eyeslam/messaging/conversion.h"
 #include "eyeslam/retina/options.h"
@@ -113,6 +114,7 @@ class FieldCopy {
   template <class Field, class Value>
   void counts(Field& field, Value& value)
   {
+    static_assert(std::extent_v<Field> == std::tuple_size_v<std::decay_t<Value>>);
     for (std::size_t i = 0; i < value.size(); ++i) number(field[i], value[i], kNotNegative);
   }
 

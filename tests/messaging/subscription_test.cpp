@@ -298,6 +298,20 @@ TEST(Subscription, LetsNoExceptionOfItsHandlerOut)
   EXPECT_EQ(marks.refused(Reason::internal_error), 3);
 }
 
+TEST(Subscription, TakesAMessageInLockStepWhenItWasSent)
+{
+  Link link("memq://", 1, {});
+  Subscription<micron_state_t> states(link);
+  Publisher<micron_state_t> publisher(link);
+  publisher.publish(MicronState(), 900, 1000);
+  link.drain({5000, 1000});
+  publisher.publish(MicronState(), 1900, 2000);
+  EXPECT_EQ(states.silence(6000), 1000);
+  EXPECT_TRUE(link.step());
+  EXPECT_EQ(states.silence(2000), 0);
+  EXPECT_FALSE(link.step());
+}
+
 TEST(Subscription, RefusesAChannelThatLcmWouldTakeForAPattern)
 {
   Link link("memq://", 1, {});
