@@ -13,7 +13,7 @@ constexpr double kMilli = 1e-3;
 
 fixtures::CurveFixture curveFixture(const GuidedTracingOptions& options)
 {
-  fixtures::CurveFixtureOptions curve;
+  fixtures::CurveFixtureOptions curve = options.curve;
   curve.compliance.lambda = options.aid == Aid::soft ? options.lambda : 0.0;
   return fixtures::CurveFixture(curve);
 }

@@ -22,8 +22,9 @@ struct GuidedTracingOptions {
   std::string motion = "in_situ";  ///< as `retinaMotionOptions` knows it
   std::uint64_t seed = 0;
   Aid aid = Aid::hard;
-  double lambda = 0.1;      ///< of the soft fixture
-  double speed_mm_s = 0.4;  ///< along the path; source: loop study, 1
+  double lambda = 0.1;                       ///< of the soft fixture
+  double speed_mm_s = 0.4;                   ///< along the path; source: loop study, 1
+  fixtures::CurveFixtureOptions curve = {};  ///< but for its lambda
 };
 
 /// One millisecond of a tracing.

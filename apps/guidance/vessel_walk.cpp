@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 namespace eyeslam::apps {
 
@@ -83,6 +84,14 @@ std::vector<Eigen::Vector2d> runWithin(const std::vector<Eigen::Vector2d>& way, 
   return run.size() > best.size() ? run : best;
 }
 
+std::vector<Eigen::Vector2d> firstPart(std::vector<Eigen::Vector2d> way, double longest_px)
+{
+  std::size_t kept = 1;
+  for (double left = longest_px; kept < way.size() && left > 0.0; ++kept) left -= (way[kept] - way[kept - 1]).norm();
+  way.resize(kept);
+  return way;
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector2d> walk(const fixtures::VesselNetwork& network, std::size_t first, double longest_px,
@@ -116,22 +125,18 @@ std::vector<Eigen::Vector2d> longestWay(const fixtures::VesselNetwork& network, 
                                         double radius_px, double longest_px)
 {
   constexpr double kFar_px = 1e5;
+  constexpr double kCentral = 0.2;  // px of length that a px nearer to the middle is worth
   std::vector<Eigen::Vector2d> best;
-  double best_length = 0.0;
+  double best_worth = -radius_px;
   for (std::size_t first = 0; first < network.vessels.size(); ++first) {
-    const auto way = runWithin(walk(network, first, kFar_px, straightest), middle_px, radius_px);
-    const double length = std::min(lengthOf(way), longest_px);
-    if (length <= best_length) continue;
-    best_length = length;
-    best = way;
+    const auto run = runWithin(walk(network, first, kFar_px, straightest), middle_px, radius_px);
+    if (run.size() < 2) continue;
+    auto way = firstPart(run, longest_px);
+    const double worth = lengthOf(way) - kCentral * (way[way.size() / 2] - middle_px).norm();
+    if (worth <= best_worth) continue;
+    best_worth = worth;
+    best = std::move(way);
   }
-  double left = longest_px;
-  std::size_t kept = std::min<std::size_t>(1, best.size());
-  while (kept < best.size() && left > 0.0) {
-    left -= (best[kept] - best[kept - 1]).norm();
-    ++kept;
-  }
-  best.resize(kept);
   return best;
 }
 

@@ -24,7 +24,8 @@ std::vector<Eigen::Vector2d> walk(const fixtures::VesselNetwork& network, std::s
 /// The branch that turns least.
 std::size_t straightest(const Eigen::Vector2d& heading, const std::vector<Eigen::Vector2d>& branches);
 
-/// The longest of all straightest ways within a circle; empty where no vessel has two points in it.
+/// Of all straightest ways within a circle a long one that is near its middle; empty where no vessel has two points in
+/// it.
 /// @param longest_px  no way is longer
 std::vector<Eigen::Vector2d> longestWay(const fixtures::VesselNetwork& network, const Eigen::Vector2d& middle_px,
                                         double radius_px, double longest_px);

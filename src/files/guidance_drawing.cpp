@@ -7,6 +7,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "eyeslam/files/graph_drawing.h"
+
 namespace eyeslam::files {
 
 namespace {
@@ -19,7 +21,6 @@ const cv::Scalar kPage{255, 255, 255};
 const cv::Scalar kWritten{40, 40, 40};
 const cv::Scalar kWhite{255, 255, 255};
 const cv::Scalar kCentreline{255, 235, 160};
-const cv::Scalar kJunction{90, 220, 255};
 const cv::Scalar kNear{255, 255, 255};
 const cv::Scalar kFar{255, 170, 60};
 
@@ -101,10 +102,13 @@ void drawVessels(const GuidanceFigure& figure, const Panel& panel, const Ink& in
 
 void drawOverview(const GuidanceFigure& figure, const Panel& panel, VectorPicture& picture)
 {
-  drawVessels(figure, panel, {kCentreline, 1.3, 1.0}, picture);
-  for (const fixtures::Junction& junction : figure.network.junctions) {
-    picture.disc(panel.place(junction.position_px), 2.6, {kJunction});
-  }
+  const Eigen::Vector2d page_corner =
+      panel.corner_px - Eigen::Vector2d(panel.area.x, panel.area.y) / panel.zoom;  // of the map, under the page's
+  GraphStyle style;
+  style.line_px = 1.3;
+  style.junction_px = 1.8;
+  style.words_px = 0.0;
+  drawGraph(picture, figure.network, {page_corner.x(), page_corner.y(), 1.0 / panel.zoom}, style);
   const Eigen::Vector2d corner = figure.window_middle_px - Eigen::Vector2d::Constant(figure.window_px / 2.0);
   const double width = panel.zoom * figure.window_px;
   picture.rectangle({panel.place(corner), cv::Size2d(width, width)}, {kWhite, 1.6, 1.0});
@@ -122,7 +126,7 @@ double spacingOf(const std::vector<FieldArrow>& field)
 void drawField(const GuidanceFigure& figure, const Panel& panel, VectorPicture& picture)
 {
   constexpr double kShown = 0.82;  // of the way to the next hand: the arrows stay apart
-  drawVessels(figure, panel, {kCentreline, 1.6, 1.0}, picture);
+  drawVessels(figure, panel, {kCentreline, 1.3, 1.0}, picture);
   const double spacing = spacingOf(figure.field);
   double farthest = 1e-9;
   for (const FieldArrow& arrow : figure.field) farthest = std::max(farthest, (arrow.goal_px - arrow.hand_px).norm());

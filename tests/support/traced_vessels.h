@@ -16,7 +16,7 @@
 #include "eyeslam/fixtures/centerline_index.h"
 #include "eyeslam/fixtures/vessel_graph.h"
 #include "eyeslam/simulation/procedural_fundus.h"
-#include "eyeslam/simulation/traced_path.h"
+#include "guidance/tracing_score.h"
 
 namespace eyeslam::support {
 
@@ -31,33 +31,11 @@ struct TracedVessels {
   }
 };
 
-/// One vessel through points of the retina frame (m), as the graph would give it.
-inline fixtures::Vessel vesselThrough(const std::vector<Eigen::Vector3d>& points, double um_per_px)
-{
-  fixtures::Vessel vessel;
-  for (const Eigen::Vector3d& place : points) {
-    fixtures::CenterlinePoint point;
-    point.position_px = place.head<2>() / (um_per_px * 1e-6);
-    point.radius_px = 10.0;
-    if (!vessel.points.empty()) {
-      const auto& last = vessel.points.back();
-      point.s_px = last.s_px + (point.position_px - last.position_px).norm();
-    }
-    vessel.points.push_back(point);
-  }
-  for (std::size_t i = 0; i < vessel.points.size(); ++i) {
-    const std::size_t before = i > 0 ? i - 1 : 0;
-    const std::size_t after = std::min(i + 1, vessel.points.size() - 1);
-    vessel.points[i].tangent = (vessel.points[after].position_px - vessel.points[before].position_px).normalized();
-  }
-  return vessel;
-}
-
-/// The loop study's vessel (its section 1).
-inline TracedVessels studyVessel(double a, double b)
+/// The loop study's vessel (its section 1), another one each seed.
+inline TracedVessels studyVessel(std::uint64_t seed)
 {
   TracedVessels vessels;
-  vessels.network.vessels.push_back(vesselThrough(simulation::sineVessel(a, b), vessels.um_per_px));
+  vessels.network.vessels.push_back(apps::vesselThrough(apps::studyPath(seed, 0.0), vessels.um_per_px));
   return vessels;
 }
 
