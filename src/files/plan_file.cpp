@@ -110,7 +110,7 @@ std::vector<BurnTarget> targetsFrom(const JsonFields& json, double least_clearan
 std::string hashFrom(const JsonFields& json, const std::string& name)
 {
   constexpr std::size_t kDigits = 64;
-  const std::string hash = json.text(name);
+  std::string hash = json.text(name);
   if (hash.size() != kDigits || hash.find_first_not_of("0123456789abcdef") != std::string::npos) {
     json.fail(name, "is no SHA-256, 64 hexadecimal digits");
   }
