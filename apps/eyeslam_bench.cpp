@@ -4,8 +4,10 @@
 
 #include <filesystem>
 
+#include "bench/centerline_study.h"
 #include "bench/detector_study.h"
 #include "bench/method_study.h"
+#include "bench/plan_tables.h"
 #include "command_line/program.h"
 #include "command_line/progress.h"
 #include "eyeslam/baselines/method.h"
@@ -17,7 +19,10 @@ using namespace eyeslam::apps;
 const std::string kExamples =
     "eyeslam-bench accuracy sequences/paper sequences/human --methods eyeslam,paper\n"
     "eyeslam-bench speed sequences/human\n"
-    "eyeslam-bench detect sequences/*";
+    "eyeslam-bench detect sequences/*\n"
+    "eyeslam-bench centerlines photographs/*_vessels.png\n"
+    "eyeslam-bench centerlines sequences/human --tracks out\n"
+    "eyeslam-bench plan sequences/* --tracks out --photographs photographs";
 
 struct BenchArguments {
   std::vector<std::string> sequences;
@@ -113,7 +118,33 @@ CLI::App* addMethodCommand(CLI::App& app, const std::string& name, const std::st
   return command;
 }
 
-std::function<void()> setUp(CLI::App& app, BenchArguments& arguments)
+CLI::App* addCenterlineCommand(CLI::App& app, CenterlineInputs& inputs)
+{
+  CLI::App* command = app.add_subcommand("centerlines", "vessel graphs against hand-drawn masks or labelled vessels");
+  command->add_option("KNOWN", inputs.known, "masks (pictures), or folders with truth")
+      ->required()
+      ->check(CLI::ExistingPath);
+  command->add_option("--tracks", inputs.tracks, "folder with what eyeslam-track wrote of each sequence, by its name")
+      ->check(CLI::ExistingDirectory);
+  command->add_flag("--quiet", inputs.quiet, "no progress on standard error");
+  return command;
+}
+
+CLI::App* addPlanCommand(CLI::App& app, PlanInputs& inputs)
+{
+  CLI::App* command = app.add_subcommand("plan", "burn plans against the vessels of their maps and the true ones");
+  command->add_option("SEQUENCES", inputs.sequences, "folders with truth")->required()->check(CLI::ExistingDirectory);
+  command->add_option("--tracks", inputs.tracks, "folder with what eyeslam-track wrote of each, by its name")
+      ->required()
+      ->check(CLI::ExistingDirectory);
+  command->add_option("--photographs", inputs.photographs, "folder with NAME.jpg and NAME_vessels.png")
+      ->check(CLI::ExistingDirectory);
+  command->add_option("--um-per-px", inputs.um_per_px, "of the photographs")->check(CLI::Range(0.3, 50.0));
+  command->add_flag("--quiet", inputs.quiet, "no progress on standard error");
+  return command;
+}
+
+std::function<void()> setUp(CLI::App& app, BenchArguments& arguments, PlanInputs& plans, CenterlineInputs& lines)
 {
   addStandardOptions(app, kExamples);
   app.require_subcommand(1);
@@ -122,9 +153,13 @@ std::function<void()> setUp(CLI::App& app, BenchArguments& arguments)
   const CLI::App* by_speed = addMethodCommand(app, "speed", "CPU time of tracking methods a frame", arguments);
   CLI::App* by_detector = addCommand(app, "detect", "vessel detectors against labelled vessels", arguments);
   by_detector->add_option("--period", arguments.period, "looks at one frame in so many")->check(CLI::Range(1, 10000));
-  return [by_accuracy, by_speed, &arguments] {
+  const CLI::App* by_plan = addPlanCommand(app, plans);
+  const CLI::App* by_line = addCenterlineCommand(app, lines);
+  return [by_accuracy, by_speed, by_plan, by_line, &arguments, &plans, &lines] {
     if (by_accuracy->parsed()) return accuracy(arguments);
     if (by_speed->parsed()) return speed(arguments);
+    if (by_line->parsed()) return printCenterlines(lines);
+    if (by_plan->parsed()) return printPlanTables(plans);
     detect(arguments);
   };
 }
@@ -134,7 +169,9 @@ std::function<void()> setUp(CLI::App& app, BenchArguments& arguments)
 int main(int argc, char** argv)
 {
   BenchArguments arguments;
+  PlanInputs plans;
+  CenterlineInputs lines;
   return runProgram("eyeslam-bench",
                     "Compares this tracker, and its parts, with the alternatives; prints Markdown tables.", argc, argv,
-                    [&arguments](CLI::App& app) { return setUp(app, arguments); });
+                    [&](CLI::App& app) { return setUp(app, arguments, plans, lines); });
 }
