@@ -33,6 +33,7 @@ cv::Point2d place(const Eigen::Vector2d& map_px, const PictureGeometry& geometry
 void drawVessel(VectorPicture& picture, const Vessel& vessel, const PictureGeometry& geometry, const GraphStyle& style)
 {
   std::vector<cv::Point2d> line;
+  line.reserve(vessel.points.size());
   for (const CenterlinePoint& point : vessel.points) line.push_back(place(point.position_px, geometry));
   picture.line(line, {colourOf(vessel.id), style.line_px});
   if (vessel.ends[0] == Vessel::kNoJunction) picture.disc(line.front(), style.end_px, {kEndColour});
