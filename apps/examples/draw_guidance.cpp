@@ -18,6 +18,7 @@
 #include "eyeslam/retina/map_hash.h"
 #include "guidance/fixture_field.h"
 #include "guidance/guided_tracing.h"
+#include "guidance/tracing_score.h"
 #include "guidance/vessel_walk.h"
 
 namespace {
@@ -37,7 +38,7 @@ constexpr int kArrows = 27;         // across the close-up
 
 struct Arguments {
   std::string folder, out, graph;
-  std::string motion = "in_situ", aid = "soft";
+  std::string motion = "in_situ", aid = "soft", follow = "way";
   double lambda = 0.1;
   double um_per_px = 0.0;
   double least_um = 60.0;
@@ -116,10 +117,11 @@ void closeUp(const std::vector<Eigen::Vector2d>& way, double um_per_px, files::G
   figure.window_px = (high - low).maxCoeff() + 2.0 * kMargin_um / um_per_px;
 }
 
-// One way along the path, after the hand has settled.
-files::DrawnTrace traced(GuidedTracing tracing, const std::string& who, const fixtures::CenterlineIndex& vessels,
-                         double um_per_px)
+// One way along the path, after the hand has settled; errors are from what the surgeon means to trace, not from
+// whatever vessel is next to it.
+files::DrawnTrace traced(GuidedTracing tracing, const std::string& who, double um_per_px)
 {
+  const fixtures::CenterlineIndex meant({vesselThrough(tracing.path().points(), um_per_px)}, um_per_px);
   files::DrawnTrace trace;
   double square = 0.0;
   const double seconds = tracing.path().length() / 0.4e-3;
@@ -129,11 +131,11 @@ files::DrawnTrace traced(GuidedTracing tracing, const std::string& who, const fi
     const Eigen::Vector2d tip = step.tip_retina.head<2>();
     trace.points_px.push_back(tip / (um_per_px * 1e-6));
     constexpr double kFar = 2e-3;
-    const auto near = vessels.nearest(tip, kFar);
+    const auto near = meant.nearest(tip, kFar);
     square += near ? near->distance * near->distance : kFar * kFar;
   }
   const double rms = std::sqrt(square / static_cast<double>(std::max<std::size_t>(1, trace.points_px.size())));
-  trace.caption = fmt::format("{}: {:.0f} um RMS off the vessel", who, rms * 1e6);
+  trace.caption = fmt::format("{}: {:.0f} um RMS off the path", who, rms * 1e6);
   return trace;
 }
 
@@ -162,12 +164,15 @@ files::GuidanceFigure figureOf(const Arguments& arguments)
                               figure.window_px / kArrows);
   figure.field_caption = arguments.aid + " fixture: from the hand to its goal";
   const auto path = ontoRetina(way, figure.um_per_px, kHeight);
+  const auto chosen = std::make_shared<const fixtures::CenterlineIndex>(
+      std::vector<fixtures::Vessel>{vesselThrough(path, figure.um_per_px)}, figure.um_per_px);
   const Eigen::Vector2d middle = figure.window_middle_px * figure.um_per_px * 1e-6;
   for (const Aid aid : {Aid::none, arguments.aid == "soft" ? Aid::soft : Aid::hard}) {
     const GuidedTracingOptions options{arguments.motion, arguments.seed, aid, arguments.lambda};
     const std::string who = aid == Aid::none ? "unaided" : arguments.aid + " fixture";
     figure.traces.push_back(
-        traced({options, index, path, {middle.x(), middle.y(), 0.0}}, who, *index, figure.um_per_px));
+        traced({options, arguments.follow == "way" ? chosen : index, path, {middle.x(), middle.y(), 0.0}}, who,
+               figure.um_per_px));
     figure.traces.back().colour = aid == Aid::none ? kUnaided : kAided;
   }
   return figure;
@@ -198,6 +203,9 @@ std::function<void()> setUp(CLI::App& app, Arguments& arguments)
   app.add_option("--out", arguments.out, "the figure: FILE.svg or FILE.png")->required();
   app.add_option("--graph", arguments.graph, "also write the whole graph, as graph.json");
   app.add_option("--aid", arguments.aid, "which fixture: soft or hard")->check(CLI::IsMember({"soft", "hard"}));
+  app.add_option("--follow", arguments.follow,
+                 "what the fixture of the traces follows: the way alone, as a surgeon chose it, or the whole network")
+      ->check(CLI::IsMember({"way", "network"}));
   app.add_option("--lambda", arguments.lambda, "share of the hand's distance that a soft fixture leaves")
       ->check(CLI::Range(0.0, 1.0));
   app.add_option("--motion", arguments.motion, "how the retina moves: paper, in_situ, jerky, saccade")

@@ -24,7 +24,8 @@ def documents():
 
 
 def programs():
-    return set(re.findall(r"eyeslam_program\(\s*([\w-]+)", tree.text("apps/CMakeLists.txt")))
+    examples = {path.stem for path in (tree.ROOT / "apps" / "examples").glob("*.cpp")}
+    return examples | set(re.findall(r"eyeslam_program\(\s*([\w-]+)", tree.text("apps/CMakeLists.txt")))
 
 
 class Documents(unittest.TestCase):
