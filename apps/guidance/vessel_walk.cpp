@@ -110,6 +110,7 @@ std::vector<Eigen::Vector2d> walk(const fixtures::VesselNetwork& network, std::s
     const std::vector<Leg> branches = branchesAt(network, junction, walked);
     if (branches.empty()) return way;
     std::vector<Eigen::Vector2d> headings;
+    headings.reserve(branches.size());
     for (const Leg& branch : branches) headings.push_back(heading(network.vessels[branch.vessel], branch));
     leg = branches[choose(-heading(vessel, reversed(leg)), headings)];
   }

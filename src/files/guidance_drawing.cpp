@@ -154,6 +154,7 @@ Panel overview(const GuidanceFigure& figure)
 VectorPicture drawGuidance(const GuidanceFigure& figure)
 {
   std::vector<Panel> panels{overview(figure)};
+  panels.reserve(2 + figure.traces.size());
   for (std::size_t i = 1; i < 2 + figure.traces.size(); ++i) {
     panels.push_back(panel(i, figure.window_middle_px, figure.window_px));
   }

@@ -81,6 +81,7 @@ void VectorPicture::arrow(cv::Point2d from, cv::Point2d to, const Ink& ink)
 void VectorPicture::disc(cv::Point2d centre, double radius_px, const Ink& ink)
 {
   std::vector<cv::Point2d> corners;
+  corners.reserve(kCircleCorners + 1);
   for (int i = 0; i <= kCircleCorners; ++i) {
     const double angle = 2.0 * CV_PI * i / kCircleCorners;
     corners.push_back(centre + radius_px * cv::Point2d(std::cos(angle), std::sin(angle)));

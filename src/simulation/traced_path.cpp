@@ -17,6 +17,7 @@ constexpr double kLength = 3e-3;
 
 TracedPath::TracedPath(std::vector<Eigen::Vector3d> points, double speed) : points_(std::move(points)), speed_(speed)
 {
+  arc_.reserve(points_.size());
   double arc = 0.0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (i > 0) arc += (points_[i] - points_[i - 1]).norm();
@@ -42,6 +43,7 @@ std::vector<Eigen::Vector3d> sineVessel(double a, double b, double step)
 {
   std::vector<Eigen::Vector3d> points;
   const int count = static_cast<int>(std::lround(kLength / step));
+  points.reserve(static_cast<std::size_t>(count) + 1);
   for (int i = 0; i <= count; ++i) {
     const double x = kLength * i / count;
     points.emplace_back(x, 300e-6 * std::sin(kTwoPi * x / 3e-3 + a) + 50e-6 * std::sin(kTwoPi * x / 1.2e-3 + b), 0.0);
