@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "command_line/number_check.h"
 #include "command_line/program.h"
 #include "eyeslam/baselines/method.h"
 #include "eyeslam/configuration/assignment.h"
@@ -20,32 +21,6 @@ const char* const kExamples =
     "  eyeslam-track 'frames/im*.png' --out results --set frame.scale=0.4 --snapshots 60,150\n"
     "  eyeslam-track camera:0 --out results --display --record camera.mkv\n"
     "  eyeslam-track --dump-config > my.yaml && eyeslam-track surgery.mp4 --out results --config my.yaml\n";
-
-// CLI11's own ranges let NaN pass, and show themselves in the help text.
-CLI::Validator within(double lowest, double highest)
-{
-  return CLI::Validator(
-      [lowest, highest](const std::string& text) {
-        double value = 0.0;
-        const bool good = CLI::detail::lexical_cast(text, value) && value >= lowest && value <= highest;
-        return good ? std::string() : fmt::format("{} is no number in [{}, {}]", text, lowest, highest);
-      },
-      "");
-}
-
-// CLI11 takes a number that does not fit for the largest that does, to which nothing can be added.
-constexpr std::int64_t kLargestFrame = 1000000000000;
-
-CLI::Validator frameNumber()
-{
-  return CLI::Validator(
-      [](const std::string& text) {
-        std::int64_t value = -1;
-        const bool good = CLI::detail::lexical_cast(text, value) && value >= 0 && value <= kLargestFrame;
-        return good ? std::string() : text + " is no frame number (0, 1, ...)";
-      },
-      "");
-}
 
 void addInputs(CLI::App& app, TrackArguments& a)
 {

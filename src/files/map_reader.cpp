@@ -175,7 +175,7 @@ std::string trackOf(const std::string& folder)
   if (!fs::exists(path, error)) return {};
   const JsonFields input = JsonFields::parse(textOf(path), path).object("input");
   if (input.isNull("sha256")) return {};  // a camera
-  const std::string hash = input.text("sha256");
+  std::string hash = input.text("sha256");
   if (hash.size() == 64 && hash.find_first_not_of("0123456789abcdef") == std::string::npos) return hash;
   throw FileError(path + ": input.sha256: is no SHA-256, 64 hexadecimal digits");
 }
@@ -223,6 +223,15 @@ std::optional<RecordedMosaic> readMosaic(const std::string& folder)
   std::error_code error;
   if (!fs::exists(path, error)) return std::nullopt;
   return RecordedMosaic{pictureOf(path, CV_8UC3), geometryOf((fs::path(folder) / "mosaic.json").string()).first};
+}
+
+RecordedMosaic readPlacedPicture(const std::string& path)
+{
+  RecordedMosaic placed{pictureOf(path, CV_8UC3), {}};
+  const std::string place = fs::path(path).replace_extension(".json").string();
+  std::error_code error;
+  if (fs::exists(place, error)) placed.geometry = geometryOf(place).first;
+  return placed;
 }
 
 }  // namespace eyeslam::files

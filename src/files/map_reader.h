@@ -25,7 +25,7 @@ struct RecordedMap {
 /// @throws FileError naming file and field: missing, truncated, of another shape or kind, of another map, no number
 RecordedMap readMap(const std::string& folder, std::optional<std::int64_t> frame = std::nullopt);
 
-/// The mosaic beside the map, with its place.
+/// A picture of the retina with its place in the map frame.
 struct RecordedMosaic {
   cv::Mat picture;  ///< 8-bit, 3 channels
   PictureGeometry geometry;
@@ -33,5 +33,8 @@ struct RecordedMosaic {
 
 /// Nothing when the folder has no mosaic.png. @throws FileError as above
 std::optional<RecordedMosaic> readMosaic(const std::string& folder);
+
+/// Any picture; its place is that of the .json of the same name beside it, else frame 0's. @throws FileError as above
+RecordedMosaic readPlacedPicture(const std::string& path);
 
 }  // namespace eyeslam::files
