@@ -26,8 +26,7 @@ constexpr Range kScale{0.01, 100.0};
 constexpr Range kUmPerPx{0.0, 1000.0};  ///< 0 = unknown
 constexpr Range kExpiry{1e-6, 1.0};     ///< s
 
-/// Passes over the fields of a message and its value together: copies one way, checks each, and remembers the first
-/// thing wrong. A source lists the fields of its type once, for both ways:
+/// The fields of a type, listed once in its source for both ways:
 ///
 ///   template <>
 ///   struct Listing<foo_t> {
@@ -40,6 +39,8 @@ struct Listing;
 
 enum class CopyTo { value, message };
 
+/// Passes over the fields of a message and its value together: copies one way, checks each, and remembers the first
+/// thing wrong.
 template <CopyTo kTo>
 class FieldCopy {
  public:
