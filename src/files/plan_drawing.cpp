@@ -19,6 +19,7 @@ namespace {
 
 using fixtures::BurnPlan;
 using fixtures::BurnTarget;
+using fixtures::validTargets;
 
 constexpr double kWidth_px = 1500.0;  // of the figure
 constexpr double kPi = 3.14159265358979323846;
@@ -49,6 +50,13 @@ double barLength_um(double width_um)
   return length;
 }
 
+// As OpenCV's font has it; SVG's is a little narrower.
+double widthOf(const std::string& text, double height_px)
+{
+  int baseline = 0;
+  return cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, height_px / 21.0, 1, &baseline).width;
+}
+
 class PlanDrawing {
  public:
   PlanDrawing(const BurnPlan& plan, const PlanBackground& background)
@@ -65,6 +73,7 @@ class PlanDrawing {
   void tiles();
   void way();
   void burns();
+  void labels();
   void scaleBar();
   void legend(const PlanDrawingOptions& options);
   VectorPicture take() { return std::move(figure_); }
@@ -78,6 +87,14 @@ class PlanDrawing {
   void landmark(const std::string& field, const std::string& text, double radius_um, const std::string& name);
   bool hasZones() const;
   void legendEntry(const std::string& text);
+  std::string refusals() const;
+
+  struct Label {
+    std::string text;
+    cv::Point2d middle;
+    double height_px;
+    cv::Scalar colour;
+  };
 
   const BurnPlan& plan_;
   PictureGeometry geometry_;
@@ -85,6 +102,7 @@ class PlanDrawing {
   cv::Rect retina_;  // the part of the figure above the legend
   VectorPicture figure_;
   cv::Point2d next_entry_;
+  std::vector<Label> labels_;  // drawn last, above all burns
 };
 
 // The retina scaled to the figure's width, the legend's paper below.
@@ -112,10 +130,8 @@ void PlanDrawing::zone(std::vector<cv::Point2d> border)
 void PlanDrawing::landmark(const std::string& field, const std::string& text, double radius_um, const std::string& name)
 {
   for (const Eigen::Vector2d& centre : fixtures::placesIn(field, text)) {
-    const cv::Point2d at = place(centre);
-    zone(circle(at, px(radius_um)));
-    figure_.words(name, at - cv::Point2d(0.3 * kWord_px * static_cast<double>(name.size()), -0.5 * kWord_px), kWord_px,
-                  {kZone});
+    zone(circle(place(centre), px(radius_um)));
+    labels_.push_back({name, place(centre) - cv::Point2d(0.0, px(radius_um)), kWord_px, kZone});
   }
 }
 
@@ -149,7 +165,7 @@ void PlanDrawing::tiles()
   for (std::size_t i = 0; i < tiles.size() && tiles.size() > 1; ++i) {
     const cv::Point2d at = place(tiles[i].centre_px);
     figure_.line(circle(at, px(plan_.prescription.order.reach_um / 2.0)), {kTile, 1.6, 0.75});
-    figure_.words(std::to_string(i + 1), at + cv::Point2d(-0.4, 0.5) * kWord_px * 1.4, kWord_px * 1.4, {kTile});
+    labels_.push_back({std::to_string(i + 1), at, 1.4 * kWord_px, kTile});
   }
 }
 
@@ -165,7 +181,7 @@ void PlanDrawing::way()
   if (way.empty()) return;
   const cv::Point2d first = way.front();
   figure_.line(std::move(way), {kWay, 1.8, 0.9});
-  figure_.line(circle(first, 9.0), {kWay, 2.4, 1.0});
+  figure_.line(circle(first, px(plan_.prescription.burn_um()) / 2.0 + 7.0), {kWay, 2.4, 1.0});
 }
 
 void PlanDrawing::burn(cv::Point2d at, double diameter_um, bool valid)
@@ -185,38 +201,58 @@ void PlanDrawing::burns()
   }
 }
 
+// On a dark ground of their own, for they lie over white burns as well as over black ones.
+void PlanDrawing::labels()
+{
+  for (const Label& label : labels_) {
+    const double width = widthOf(label.text, label.height_px), half = 0.8 * label.height_px;
+    const cv::Point2d left = label.middle - cv::Point2d(width / 2.0, 0.0);
+    figure_.line({left, left + cv::Point2d(width, 0.0)}, {kWords, 2.0 * half, 0.5});
+    figure_.words(label.text, left + cv::Point2d(0.0, label.height_px / 2.0), label.height_px, {label.colour});
+  }
+}
+
+// At the right of the legend, where no burn lies behind it.
 void PlanDrawing::scaleBar()
 {
-  const double um = barLength_um(retina_.width / scale_ * plan_.um_per_px), length = px(um);
-  const cv::Point2d right(retina_.width - 28.0, retina_.height - 26.0), left = right - cv::Point2d(length, 0.0);
+  const double um = barLength_um(retina_.width / scale_ * plan_.um_per_px);
+  const cv::Point2d right(retina_.width - 28.0, retina_.height + 68.0), left = right - cv::Point2d(px(um), 0.0);
   const std::string text = um >= 1000.0 ? fmt::format("{} mm", um / 1000.0) : fmt::format("{} um", um);
-  for (const auto& [colour, width] : {std::pair(kBlack, 9.0), std::pair(kWhite, 5.0)}) {
-    figure_.line({left, right}, {colour, width});
-  }
-  figure_.words(text, left + cv::Point2d(1.5, -12.5), kWord_px, {kBlack});
-  figure_.words(text, left + cv::Point2d(0.0, -14.0), kWord_px, {kWhite});
+  figure_.line({left, right}, {kWords, 5.0});
+  figure_.words(text, left - cv::Point2d(widthOf(text, kWord_px) + 14.0, -0.5 * kWord_px), kWord_px, {kWords});
 }
 
 void PlanDrawing::legendEntry(const std::string& text)
 {
-  int baseline = 0;
-  const cv::Size size = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, kWord_px / 21.0, 1, &baseline);
   figure_.words(text, next_entry_ + cv::Point2d(0.0, 0.5 * kWord_px), kWord_px, {kWords});
-  next_entry_.x += size.width + 64.0;
+  next_entry_.x += widthOf(text, kWord_px) + 64.0;
+}
+
+std::string PlanDrawing::refusals() const
+{
+  std::map<retina::Reason, int> refused;
+  for (const BurnTarget& target : plan_.targets) ++refused[target.reason];
+  refused.erase(retina::Reason::none);
+  std::string text = std::to_string(plan_.targets.size() - validTargets(plan_)) + " refused";
+  for (const auto& [reason, count] : refused) {
+    std::string why(retina::word(reason));
+    std::replace(why.begin(), why.end(), '_', ' ');
+    text += fmt::format("{} {} {}", reason == refused.begin()->first ? ":" : ",", count, why);
+  }
+  return text;
 }
 
 void PlanDrawing::legend(const PlanDrawingOptions& options)
 {
   figure_.clipTo({});
-  std::map<retina::Reason, int> refused;
-  for (const BurnTarget& target : plan_.targets) ++refused[target.reason];
   next_entry_ = {44.0, retina_.height + 28.0};
-  for (const auto& [reason, count] : refused) {
-    const bool valid = reason == retina::Reason::none;
+  const auto dot = [this](const cv::Scalar& colour, const std::string& text) {
     figure_.disc(next_entry_ - cv::Point2d(18.0, 0.0), 9.0, {kBlack});
-    if (valid) figure_.disc(next_entry_ - cv::Point2d(18.0, 0.0), 7.5, {kWhite});
-    legendEntry(fmt::format("{} {}", count, valid ? "valid" : std::string(retina::word(reason))));
-  }
+    figure_.disc(next_entry_ - cv::Point2d(18.0, 0.0), 7.5, {colour});
+    legendEntry(text);
+  };
+  dot(kWhite, fmt::format("{} valid", validTargets(plan_)));
+  dot(kBlack, refusals());
   next_entry_ = {44.0, retina_.height + 68.0};
   legendEntry(fmt::format("burn {:.0f} um, margin {:.0f} um", plan_.prescription.burn_um(),
                           plan_.prescription.safety.margin_um));
@@ -228,6 +264,17 @@ void PlanDrawing::legend(const PlanDrawingOptions& options)
   if (hasZones()) stroke(kZone, "keep-out");
   if (fixtures::travelOf(plan_).tiles.size() > 1) stroke(kTile, "placement of the workspace");
   if (options.travel) stroke(kWay, "travel");
+}
+
+// What was seen at all, with a border; the whole map where that is nothing.
+cv::Rect seenPart(const retina::VesselMap& map)
+{
+  constexpr int kBorder = 8;
+  const cv::Rect whole(0, 0, map.width, map.height);
+  const cv::Mat seen = cv::Mat(map.seen, false).reshape(1, map.height);
+  const cv::Rect part = cv::boundingRect(seen);
+  if (part.empty()) return whole;
+  return cv::Rect(part.x - kBorder, part.y - kBorder, part.width + 2 * kBorder, part.height + 2 * kBorder) & whole;
 }
 
 }  // namespace
@@ -246,7 +293,9 @@ PlanBackground mapBackground(const retina::VesselMap& map, int vessel_probabilit
                                             static_cast<uchar>(colour[2])};
     }
   }
-  return {picture, {map.origin_x, map.origin_y, map.px_per_cell}};
+  const cv::Rect shown = seenPart(map);
+  return {picture(shown).clone(),
+          {map.origin_x + shown.x * map.px_per_cell, map.origin_y + shown.y * map.px_per_cell, map.px_per_cell}};
 }
 
 VectorPicture drawPlan(const fixtures::BurnPlan& plan, const PlanBackground& background,
@@ -257,8 +306,9 @@ VectorPicture drawPlan(const fixtures::BurnPlan& plan, const PlanBackground& bac
   drawing.zones();
   if (options.travel) drawing.way();
   drawing.burns();
-  drawing.scaleBar();
+  drawing.labels();
   drawing.legend(options);
+  drawing.scaleBar();
   return drawing.take();
 }
 

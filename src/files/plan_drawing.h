@@ -21,7 +21,8 @@ struct PlanDrawingOptions {
   bool travel = false;  ///< the way from burn to burn
 };
 
-/// The map in muted colours, between the white and the black of burns: vessels dark red, retina seen too seldom grey.
+/// The seen part of a map in muted colours, between the white and the black of burns: vessels dark red, retina seen too
+/// seldom grey.
 PlanBackground mapBackground(const retina::VesselMap& map, int vessel_probability, int seen_frames);
 
 /// The plan as in Fig. 8 of the EyeSLAM paper: burns in their true size, white where they are allowed and black where

@@ -93,18 +93,20 @@ class GoodInput(PlanCase):
 
 class Drawings(PlanCase):
     def burn_colours(self, plan, picture):
-        """Brightness in the middle of each target, of a drawing over the map."""
+        """Brightness in the middle of each target, of a drawing over the map: what was seen, and 8 cells around it."""
         geometry = self.read("out/map/" + self.newest_map().replace(".png", ".json"))
-        cells = cv2.imread(os.path.join(self.dir, "map", self.newest_map()), cv2.IMREAD_UNCHANGED)
-        scale = picture.shape[1] / (cells.shape[1] * geometry["px_per_cell"])
+        seen = cv2.imread(os.path.join(self.dir, "map", self.newest_map().replace("map", "seen")), cv2.IMREAD_UNCHANGED)
+        left, top, width, _ = cv2.boundingRect(seen)
+        first, last = max(left - 8, 0), min(left + width + 8, seen.shape[1])
+        scale = picture.shape[1] / ((last - first) * geometry["px_per_cell"])
         for target in plan["targets"]:
-            x, y = ((target[key] - geometry[origin] + geometry["px_per_cell"] / 2) * scale - 0.5
-                    for key, origin in (("x_px", "origin_x"), ("y_px", "origin_y")))
+            x, y = (((target[key] - geometry[origin]) / geometry["px_per_cell"] - corner + 0.5) * geometry["px_per_cell"] * scale - 0.5
+                    for key, origin, corner in (("x_px", "origin_x", first), ("y_px", "origin_y", max(top - 8, 0))))
             if 0 <= y < picture.shape[0] and 0 <= x < picture.shape[1]:
                 yield target, int(picture[round(y), round(x)].mean())
 
     def test_valid_burns_are_white_and_refused_ones_black(self):
-        plan, _ = self.plan("--pattern", "hexagonal", "--png", self.path("plan.png"))
+        plan, _ = self.plan("--pattern", "hexagonal", "--set", "order.reach_um=50000", "--png", self.path("plan.png"))
         seen = list(self.burn_colours(plan, cv2.imread(self.path("plan.png"))))
         self.assertGreater(len(seen), 0.9 * len(plan["targets"]))
         for target, brightness in seen:
