@@ -6,6 +6,7 @@
 
 #include "bench/centerline_study.h"
 #include "bench/detector_study.h"
+#include "bench/loop_tables.h"
 #include "bench/method_study.h"
 #include "bench/plan_tables.h"
 #include "command_line/program.h"
@@ -22,7 +23,8 @@ const std::string kExamples =
     "eyeslam-bench detect sequences/*\n"
     "eyeslam-bench centerlines photographs/*_vessels.png\n"
     "eyeslam-bench centerlines sequences/human --tracks out\n"
-    "eyeslam-bench plan sequences/* --tracks out --photographs photographs";
+    "eyeslam-bench plan sequences/* --tracks out --photographs photographs\n"
+    "eyeslam-bench loop --seeds 5";
 
 struct BenchArguments {
   std::vector<std::string> sequences;
@@ -144,7 +146,17 @@ CLI::App* addPlanCommand(CLI::App& app, PlanInputs& inputs)
   return command;
 }
 
-std::function<void()> setUp(CLI::App& app, BenchArguments& arguments, PlanInputs& plans, CenterlineInputs& lines)
+CLI::App* addLoopCommand(CLI::App& app, LoopInputs& inputs)
+{
+  CLI::App* command = app.add_subcommand("loop", "the 1 kHz loop in lock-step trials, beside the loop study");
+  command->add_option("--seeds", inputs.seeds, "trials a line")->check(CLI::Range(1, 10000));
+  command->add_option("--seconds", inputs.seconds, "that count, of each")->check(CLI::Range(1.0, 3600.0));
+  command->add_flag("--quiet", inputs.quiet, "no progress on standard error");
+  return command;
+}
+
+std::function<void()> setUp(CLI::App& app, BenchArguments& arguments, PlanInputs& plans, CenterlineInputs& lines,
+                            LoopInputs& loops)
 {
   addStandardOptions(app, kExamples);
   app.require_subcommand(1);
@@ -155,11 +167,13 @@ std::function<void()> setUp(CLI::App& app, BenchArguments& arguments, PlanInputs
   by_detector->add_option("--period", arguments.period, "looks at one frame in so many")->check(CLI::Range(1, 10000));
   const CLI::App* by_plan = addPlanCommand(app, plans);
   const CLI::App* by_line = addCenterlineCommand(app, lines);
-  return [by_accuracy, by_speed, by_plan, by_line, &arguments, &plans, &lines] {
+  const CLI::App* by_loop = addLoopCommand(app, loops);
+  return [by_accuracy, by_speed, by_plan, by_line, by_loop, &arguments, &plans, &lines, &loops] {
     if (by_accuracy->parsed()) return accuracy(arguments);
     if (by_speed->parsed()) return speed(arguments);
     if (by_line->parsed()) return printCenterlines(lines);
     if (by_plan->parsed()) return printPlanTables(plans);
+    if (by_loop->parsed()) return printLoopTables(loops);
     detect(arguments);
   };
 }
@@ -171,7 +185,8 @@ int main(int argc, char** argv)
   BenchArguments arguments;
   PlanInputs plans;
   CenterlineInputs lines;
+  LoopInputs loops;
   return runProgram("eyeslam-bench",
                     "Compares this tracker, and its parts, with the alternatives; prints Markdown tables.", argc, argv,
-                    [&](CLI::App& app) { return setUp(app, arguments, plans, lines); });
+                    [&](CLI::App& app) { return setUp(app, arguments, plans, lines, loops); });
 }

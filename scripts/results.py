@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """results.py [PART...]: measures on the sequences of ../shared/sequences and writes docs/results.md.
 
-The parts: tracking, paper_method, methods, detectors, guidance, plans; without any, all. What is not measured again is
+The parts: tracking, paper_method, methods, detectors, guidance, plans, loop; without any, all. What is not measured again is
 taken from out/results/PART.md. Errors and maps are judged by ../shared/score.py; the command of each figure stands beside it.
 Needs a release build.
 """
@@ -238,7 +238,16 @@ def plans(names):
     yield bench("plan", *folders, "--tracks", runs, "--photographs", SHARED / "photographs")
 
 
-PARTS = {part.__name__: part for part in (tracking, paper_method, methods, detectors, guidance, plans)}
+def loop(names):
+    yield "## The 1 kHz loop\n"
+    yield "Lock-step trials of predictors, trim, integral action and limits with the tracker's noise assumed, not rendered:"
+    yield "hand, eye, manipulator, camera and tracker by the loop study's model, tremor of 50 to 100 um RMS per axis, 20 seeds"
+    yield "of 20 s. `30/20`: 30 frames a second, at most 20 ms from mid-exposure to pose; `true`: the true pose each ms.\n"
+    yield "```text\neyeslam-bench loop\n```"
+    yield bench("loop")
+
+
+PARTS = {part.__name__: part for part in (tracking, paper_method, methods, detectors, guidance, plans, loop)}
 
 
 def head():
