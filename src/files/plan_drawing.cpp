@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -152,7 +153,8 @@ void PlanDrawing::zones()
   }
   for (const auto& corners : fixtures::polygonsIn("keep_out.polygons_px", zones.polygons_px)) {
     std::vector<cv::Point2d> border;
-    for (const Eigen::Vector2d& corner : corners) border.push_back(place(corner));
+    std::transform(corners.begin(), corners.end(), std::back_inserter(border),
+                   [this](const Eigen::Vector2d& corner) { return place(corner); });
     border.push_back(border.front());
     zone(std::move(border));
   }
