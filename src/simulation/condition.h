@@ -25,14 +25,11 @@ struct TissueOptions {
                   "of a view 800 px wide; source: rendered sequences, 5-5.7, porcine 3.6");
     visitor.field("um_per_px_spread", self.um_per_px_spread, Range{0, 0.5}, "",
                   "by which seeds differ, up and down; source: our choice");
-    visitor.field(
-        "contrast", self.contrast, Range{0, 2}, "",
-        "of vessels and texture against their surroundings; source: our choice, by eye");
+    visitor.field("contrast", self.contrast, Range{0, 2}, "",
+                  "of vessels and texture against their surroundings; source: our choice, by eye");
     visitor.field("textured", self.textured, Range{0, 1}, "",
                   "whether there is anything to see between the vessels; source: our choice, for plain retinas");
-    visitor.field(
-        "screen", self.screen, Range{0, 1}, "",
-        "strength of a printer's screen; source: our choice, by eye");
+    visitor.field("screen", self.screen, Range{0, 1}, "", "strength of a printer's screen; source: our choice, by eye");
   }
 };
 

@@ -38,9 +38,8 @@ struct IlluminationOptions {
                   "radius of the round field, 0 = no rim; source: rendered sequences, 397-444");
     visitor.field("rim_softness_px", self.rim_softness_px, Range{1, 200}, "px",
                   "width of the rim's edge; source: our choice, by eye");
-    visitor.field(
-        "rim_offset_px", self.rim_offset_px, Range{0, 200}, "px",
-        "largest offset of the field from the image centre; source: our choice, by eye");
+    visitor.field("rim_offset_px", self.rim_offset_px, Range{0, 200}, "px",
+                  "largest offset of the field from the image centre; source: our choice, by eye");
     visitor.field("blackouts", self.blackouts, Range{0, 100}, "", "how often the light goes out; source: our choice");
     visitor.field("blackout_shortest_s", self.blackout_shortest_s, Range{0.05, 100}, "s", "source: rendered sequences");
     visitor.field("blackout_longest_s", self.blackout_longest_s, Range{0.05, 100}, "s", "source: rendered sequences");

@@ -28,14 +28,12 @@ struct InstrumentOptions {
                   "how long the instrument is in view, 0 = never; source: our choice");
     visitor.field("narrowest_px", self.narrowest_px, Range{1, 400}, "px",
                   "smallest shaft width; source: rendered sequences, 26-40 in vivo, 66 ex vivo");
-    visitor.field("widest_px", self.widest_px, Range{1, 400}, "px",
-                  "largest shaft width; source: our choice, by eye");
+    visitor.field("widest_px", self.widest_px, Range{1, 400}, "px", "largest shaft width; source: our choice, by eye");
     visitor.field("taper_widths", self.taper_widths, Range{0.5, 20}, "shaft widths",
                   "length of the tapered end; source: rendered sequences");
     visitor.field("wander_px", self.wander_px, Range{0, 400}, "px", "how far the tip moves about; source: our choice");
-    visitor.field(
-        "softness_px", self.softness_px, Range{0.5, 20}, "px",
-        "width of its edges: it is not in the retina's focus; source: our choice, by eye");
+    visitor.field("softness_px", self.softness_px, Range{0.5, 20}, "px",
+                  "width of its edges: it is not in the retina's focus; source: our choice, by eye");
     visitor.field("shadow_depth", self.shadow_depth, Range{0, 1}, "of the light",
                   "what the shadow takes away; source: our choice, by eye");
   }

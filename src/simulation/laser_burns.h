@@ -26,9 +26,8 @@ struct LaserBurnsOptions {
     visitor.field("every_frames", self.every_frames, Range{0, 1e6}, "",
                   "frames between pulses, 0 = no laser; source: rendered sequences, 25");
     visitor.field("burn_px", self.burn_px, Range{0.5, 200}, "px", "radius of a burn; source: rendered sequences");
-    visitor.field(
-        "whiteness", self.whiteness, Range{0, 1}, "",
-        "how far the retina turns white in the middle; source: our choice, by eye");
+    visitor.field("whiteness", self.whiteness, Range{0, 1}, "",
+                  "how far the retina turns white in the middle; source: our choice, by eye");
     visitor.field("aiming_px", self.aiming_px, Range{0.5, 100}, "px",
                   "radius of the aiming spot; source: our choice, by eye");
     visitor.field("flash_frames", self.flash_frames, Range{1, 30}, "",

@@ -35,12 +35,9 @@ struct OpticsOptions {
                   "by which it slowly changes; source: our choice");
     visitor.field("veil", self.veil, Range{0, 1}, "of white",
                   "stray light over the whole field; source: our choice, by eye");
-    visitor.field("white_red", self.white_red, Range{0, 4}, "",
-                  "gain of red; source: our choice, by eye");
-    visitor.field("white_green", self.white_green, Range{0, 4}, "",
-                  "gain of green; source: our choice, by eye");
-    visitor.field("white_blue", self.white_blue, Range{0, 4}, "",
-                  "gain of blue; source: our choice, by eye");
+    visitor.field("white_red", self.white_red, Range{0, 4}, "", "gain of red; source: our choice, by eye");
+    visitor.field("white_green", self.white_green, Range{0, 4}, "", "gain of green; source: our choice, by eye");
+    visitor.field("white_blue", self.white_blue, Range{0, 4}, "", "gain of blue; source: our choice, by eye");
   }
 };
 

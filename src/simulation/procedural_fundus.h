@@ -29,9 +29,8 @@ struct ProceduralFundusOptions {
     visitor.field("height_mm", self.height_mm, Range{1, 40}, "mm", "size of the picture; source: our choice");
     visitor.field("texture", self.texture, Range{0, 4}, "",
                   "strength of pigment and nerve fibres; source: HRF, 12 % of green");
-    visitor.field(
-        "choroid", self.choroid, Range{0, 4}, "",
-        "strength of the choroid's vessels under the retina; source: our choice, by eye");
+    visitor.field("choroid", self.choroid, Range{0, 4}, "",
+                  "strength of the choroid's vessels under the retina; source: our choice, by eye");
     visitor.group("vessels", self.vessels);
   }
 };
