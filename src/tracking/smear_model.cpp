@@ -40,6 +40,7 @@ Refinement SmearModel::refine(const Mosaic& mosaic, const MaskedContrast& frame,
   region_ = viewBox(frame.size(), start, mosaic.centre());
   region_ = {region_.x - reach, region_.y - reach, region_.width + 2 * reach, region_.height + 2 * reach};
   mosaic_centre_ = mosaic.centre();
+  shapeWindow();
   mosaic.read(region_, mean_, count_);
 
   Refinement best;
@@ -70,6 +71,16 @@ Refinement SmearModel::refine(const Mosaic& mosaic, const MaskedContrast& frame,
   smear(sharp, best_share * whole, 1, smeared_);
   const Refinement refined = full_.refine(frame.contrast, smeared_, best.map_T_frame, freedom, scale_sigma);
   return refined.valid ? refined : best;
+}
+
+// The window's size changes with the motion; planes over storage that only grows allocate nothing in the long run.
+void SmearModel::shapeWindow()
+{
+  const auto cells = static_cast<std::size_t>(region_.area());
+  if (mean_store_.size() < cells) mean_store_.resize(cells);
+  if (count_store_.size() < cells) count_store_.resize(cells);
+  mean_ = cv::Mat_<std::int16_t>(region_.height, region_.width, mean_store_.data());
+  count_ = cv::Mat_<std::uint8_t>(region_.height, region_.width, count_store_.data());
 }
 
 void SmearModel::smear(const AlignmentTemplate& sharp, const Eigen::Vector2d& extent, std::size_t stride,

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "eyeslam/retina/options.h"
 #include "eyeslam/tracking/alignment_template.h"
@@ -45,6 +47,7 @@ class SmearModel {
                     const retina::Pose2& start, const Eigen::Vector2d& motion, Freedom freedom, double scale_sigma);
 
  private:
+  void shapeWindow();
   void smear(const AlignmentTemplate& sharp, const Eigen::Vector2d& extent, std::size_t stride,
              AlignmentTemplate& smeared) const;
 
@@ -53,6 +56,8 @@ class SmearModel {
   Refiner full_;
   cv::Rect region_;  // of the mosaic that was read
   Eigen::Vector2d mosaic_centre_ = Eigen::Vector2d::Zero();
+  std::vector<std::int16_t> mean_store_;
+  std::vector<std::uint8_t> count_store_;
   cv::Mat_<std::int16_t> mean_;
   cv::Mat_<std::uint8_t> count_;
   AlignmentTemplate smeared_;
