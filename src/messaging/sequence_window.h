@@ -14,6 +14,7 @@ class SequenceWindow {
   /// @return none, out_of_order or replayed
   retina::Reason admit(std::int64_t seq)
   {
+    if (seq < 0) return retina::Reason::replayed;  // numbers begin at 0
     if (seq > highest_) return advance(seq);
     const std::int64_t behind = highest_ - seq;
     if (behind >= kWidth || (seen_ >> behind & 1U) != 0) return retina::Reason::replayed;
@@ -29,9 +30,13 @@ class SequenceWindow {
 
   retina::Reason advance(std::int64_t seq)
   {
-    const std::int64_t ahead = seq - highest_;
-    if (highest_ >= 0) lost_ += ahead - 1;
-    seen_ = ahead < kWidth ? seen_ << ahead | 1U : 1U;
+    if (highest_ < 0) {
+      seen_ = 1U;
+    } else {
+      const std::int64_t ahead = seq - highest_;
+      lost_ += ahead - 1;
+      seen_ = ahead < kWidth ? seen_ << ahead | 1U : 1U;
+    }
     highest_ = seq;
     return retina::Reason::none;
   }

@@ -19,14 +19,14 @@ std::vector<Eigen::Vector3d> sweep(unsigned seed, int count, double extent, doub
 {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> across(-extent, extent);
-  std::normal_distribution<double> off(0.0, noise);
+  std::normal_distribution<double> unit(0.0, 1.0);  // scaled, because a deviation of 0 is not allowed
   const Eigen::Vector3d first = normal.unitOrthogonal();
   const Eigen::Vector3d second = normal.cross(first);
   std::vector<Eigen::Vector3d> points;
   for (int i = 0; i < count; ++i) {
     const double u = across(random);
     const double v = across(random);
-    points.emplace_back(u * first + v * second + (2e-3 + off(random)) * normal);
+    points.emplace_back(u * first + v * second + (2e-3 + noise * unit(random)) * normal);
   }
   return points;
 }
