@@ -52,10 +52,12 @@ def main():
     entries = [entry for entry in json.loads((pathlib.Path(build) / "compile_commands.json").read_text())
                if pathlib.Path(entry["file"]).relative_to(ROOT).parts[0] in ("src", "apps")]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        complaints = [said for said in pool.map(lambda entry: check(build, entry), entries) if said]
-    for said in complaints:
-        print(said)
-    print(f"{len(entries)} sources, {len(complaints)} with findings")
+        complaints = 0
+        for said in pool.map(lambda entry: check(build, entry), entries):
+            if said:
+                complaints += 1
+                print(said, flush=True)
+    print(f"{len(entries)} sources, {complaints} with findings")
     sys.exit(1 if complaints or not entries else 0)
 
 
