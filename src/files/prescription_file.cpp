@@ -11,7 +11,7 @@ fixtures::BurnPrescription readPrescription(const std::string& path, const std::
   std::vector<conf::Assignment> assignments;
   if (!path.empty()) assignments = conf::readYaml(path, conf::YamlLists::joined);
   for (const std::string& setting : settings) assignments.push_back(conf::parseSetting(setting));
-  const auto prescription = conf::applied(fixtures::BurnPrescription(), assignments);
+  auto prescription = conf::applied(fixtures::BurnPrescription(), assignments);
   try {
     fixtures::check(prescription);
   } catch (const fixtures::PlanError& error) {
