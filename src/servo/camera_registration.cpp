@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "eyeslam/servo/robust_weights.h"
+
 namespace eyeslam::servo {
 
 using retina::Reason;
@@ -21,19 +23,6 @@ bool isFinite(const TipSample& sample)
 {
   return sample.tip.allFinite() && sample.image_px.allFinite() && std::isfinite(sample.sigma_px) &&
          sample.sigma_px > 0.0;
-}
-
-double tukey(double sigmas, double cut)
-{
-  const double inside = std::max(0.0, 1.0 - sigmas * sigmas / (cut * cut));
-  return inside * inside;
-}
-
-double medianOf(std::vector<double>& values)
-{
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace
@@ -105,7 +94,7 @@ Reason CameraRegistration::fit(const std::vector<TipSample>& samples)
     std::vector<double> sorted = distances;
     noise = std::max(0.1, medianOf(sorted) / kMedianOfTwo);
     for (std::size_t i = 0; i < used.size(); ++i)
-      weights[i] = tukey(distances[i] / noise, 1.5 * options_.outlier_sigmas);
+      weights[i] = biweight(distances[i] / noise / (1.5 * options_.outlier_sigmas));
   }
   last_tip_ = used.back().tip;
   refused_ += static_cast<int>(std::count(weights.begin(), weights.end(), 0.0));

@@ -6,6 +6,7 @@
 
 #include "eyeslam/retina/options.h"
 #include "eyeslam/retina/reason.h"
+#include "eyeslam/retina/smoothstep.h"
 
 namespace eyeslam::servo {
 
@@ -91,7 +92,7 @@ class HandOver {
   /// @param dt  s since the last call; what is not positive and finite leaves the share as it is
   double update(bool guides, double dt);
   /// [0, 1], with a slope of zero at both ends.
-  double share() const { return progress_ * progress_ * (3.0 - 2.0 * progress_); }
+  double share() const { return retina::smoothstep(progress_); }
 
  private:
   double rate_;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "eyeslam/servo/robust_weights.h"
+
 namespace eyeslam::servo {
 
 using retina::Reason;
@@ -55,9 +57,7 @@ double medianDistance(const std::vector<Eigen::Vector3d>& points, const Spread& 
 {
   scratch.clear();
   for (const auto& point : points) scratch.push_back(std::abs(plane.normal.dot(point - plane.mean)));
-  const auto middle = scratch.begin() + static_cast<std::ptrdiff_t>(scratch.size() / 2);
-  std::nth_element(scratch.begin(), middle, scratch.end());
-  return *middle;
+  return medianOf(scratch);
 }
 
 // Least median of squares over drawn triples; the draws are seeded, so that the same points give the same plane.
@@ -97,9 +97,7 @@ SurfaceFit fitSurface(const std::vector<Eigen::Vector3d>& points, const Eigen::V
     constexpr double kSmallest = 1e-6;  // m; exact points would leave no width to the weights
     const double cut = 4.7 * std::max(kSmallest, kNormal * medianDistance(used, plane, scratch));
     for (std::size_t i = 0; i < used.size(); ++i) {
-      const double ratio = plane.normal.dot(used[i] - plane.mean) / cut;
-      const double inside = std::max(0.0, 1.0 - ratio * ratio);
-      weights[i] = inside * inside;
+      weights[i] = biweight(plane.normal.dot(used[i] - plane.mean) / cut);
     }
     plane = weighted(used, weights);
   }

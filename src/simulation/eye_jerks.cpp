@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "eyeslam/retina/smoothstep.h"
+
 namespace eyeslam::simulation {
 
 namespace {
@@ -14,12 +16,6 @@ constexpr double kMilli = 1e-3;
 constexpr double kDegree = kPi / 180.0;
 constexpr double kHomeward_rad = 0.5;  // how far from the way back a jerk that returns may point
 constexpr std::uint64_t kStream = 55;
-
-double smoothStep(double part)
-{
-  const double s = std::clamp(part, 0.0, 1.0);
-  return s * s * (3.0 - 2.0 * s);
-}
 
 }  // namespace
 
@@ -62,7 +58,7 @@ void EyeJerks::advance(double t)
     jerk_ = drawn(jerk_.start_s + duration_s_);
   }
   under_way_ = t > jerk_.start_s;
-  const double part = under_way_ ? smoothStep((t - jerk_.start_s) / duration_s_) : 0.0;
+  const double part = under_way_ ? retina::smoothstep((t - jerk_.start_s) / duration_s_) : 0.0;
   own_way_ = own_done_;
   tool_way_ = tool_done_;
   (jerk_.by_tool ? tool_way_ : own_way_) += part * jerk_.way;

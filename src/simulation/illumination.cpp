@@ -5,6 +5,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "eyeslam/retina/smoothstep.h"
+
 namespace eyeslam::simulation {
 
 namespace {
@@ -12,12 +14,6 @@ namespace {
 constexpr int kLightCell = 8;  // light is smooth: computed once per cell, interpolated between
 constexpr double kSwitching_s = 0.02;
 constexpr double kTwoPi = 6.28318530717958647693;
-
-double smoothEdge(double t)
-{
-  const double s = std::clamp(t, 0.0, 1.0);
-  return s * s * (3.0 - 2.0 * s);
-}
 
 }  // namespace
 
@@ -45,7 +41,7 @@ void Illumination::drawField(double softness_px)
   for (int y = 0; y < view_.height; ++y) {
     for (int x = 0; x < view_.width; ++x) {
       const double distance = std::hypot(x - rim_centre_.x, y - rim_centre_.y);
-      field_(y, x) = static_cast<float>(smoothEdge((rim_radius_ - distance) / softness_px + 0.5));
+      field_(y, x) = static_cast<float>(retina::smoothstep((rim_radius_ - distance) / softness_px + 0.5));
     }
   }
 }
@@ -84,8 +80,8 @@ double Illumination::switchedOn(double t) const
 {
   double on = 1.0;
   for (const Interval& dark : dark_) {
-    const double out =
-        std::min(smoothEdge((t - dark.from_s) / kSwitching_s), smoothEdge((dark.to_s - t) / kSwitching_s));
+    const double out = std::min(retina::smoothstep((t - dark.from_s) / kSwitching_s),
+                                retina::smoothstep((dark.to_s - t) / kSwitching_s));
     on = std::min(on, 1.0 - out);
   }
   return on;

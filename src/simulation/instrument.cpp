@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/retina/smoothstep.h"
+
 namespace eyeslam::simulation {
 
 namespace {
@@ -12,12 +14,6 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kBluntTip = 0.14;  // half width at the very end, of the shaft's half width
 constexpr double kMoving_s = 0.8;   // how long the way in or out takes
 constexpr std::size_t kBrushed = 256;
-
-double smoothStep(double t)
-{
-  const double s = std::clamp(t, 0.0, 1.0);
-  return s * s * (3.0 - 2.0 * s);
-}
 
 // Light over a cylinder: `across` from -1 to 1. A broad specular line beside the middle, edges a little darker.
 double metal(double across)
@@ -75,7 +71,8 @@ double Instrument::retreat(double t) const
 {
   double out = 1.0;
   for (const Visit& visit : visits_) {
-    out = std::min(out, smoothStep((visit.from_s - t) / kMoving_s) + smoothStep((t - visit.to_s) / kMoving_s));
+    out = std::min(
+        out, retina::smoothstep((visit.from_s - t) / kMoving_s) + retina::smoothstep((t - visit.to_s) / kMoving_s));
   }
   return std::min(out, 1.0);
 }
@@ -130,7 +127,7 @@ int Instrument::draw(const InstrumentPose& pose, const cv::Mat_<float>& field, c
       const double aside = -(x - pose.tip.x) * s + (y - pose.tip.y) * c;
       const double outside = distanceOutside(behind, aside, pose.shaft_width);
       if (outside > soft) continue;
-      const double alpha = smoothStep(0.5 - 0.5 * outside / soft);
+      const double alpha = retina::smoothstep(0.5 - 0.5 * outside / soft);
       const double half = 0.5 * pose.shaft_width *
                           std::max(kBluntTip, std::min(1.0, behind / (options_.taper_widths * pose.shaft_width)));
       const double place = std::max(0.0, behind) * 4.0 / pose.shaft_width;
@@ -162,7 +159,7 @@ void Instrument::castShadow(const InstrumentPose& pose, cv::Mat_<float>& light) 
       const double aside = -(x - shadow.tip.x) * s + (y - shadow.tip.y) * c;
       const double outside = distanceOutside(behind, aside, pose.shaft_width);
       if (outside > soft) continue;
-      light(y, x) *= static_cast<float>(1.0 - options_.shadow_depth * smoothStep(0.5 - 0.5 * outside / soft));
+      light(y, x) *= static_cast<float>(1.0 - options_.shadow_depth * retina::smoothstep(0.5 - 0.5 * outside / soft));
     }
   }
 }

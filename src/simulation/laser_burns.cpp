@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/retina/smoothstep.h"
 #include "eyeslam/simulation/specular_blooms.h"
 
 namespace eyeslam::simulation {
@@ -12,12 +13,6 @@ namespace {
 
 // Coagulated retina under white light, BGR.
 const cv::Vec4f kCoagulated(0.55F, 0.64F, 0.92F, 0.0F);
-
-double smoothStep(double t)
-{
-  const double s = std::clamp(t, 0.0, 1.0);
-  return s * s * (3.0 - 2.0 * s);
-}
 
 }  // namespace
 
@@ -43,7 +38,7 @@ void LaserBurns::burn(cv::Mat& canvas, cv::Point2d place) const
   for (int y = area.y; y < area.y + area.height; ++y) {
     for (int x = area.x; x < area.x + area.width; ++x) {
       const double distance = std::hypot(x - place.x, y - place.y) / radius;
-      const auto part = static_cast<float>(options_.whiteness * smoothStep(1.25 * (1.3 - distance)));
+      const auto part = static_cast<float>(options_.whiteness * retina::smoothstep(1.25 * (1.3 - distance)));
       auto& pixel = canvas.at<cv::Vec4f>(y, x);
       pixel += part * (kCoagulated - pixel);
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "eyeslam/retina/smoothstep.h"
 #include "eyeslam/simulation/noise_field.h"
 #include "eyeslam/simulation/vessel_drawing.h"
 
@@ -19,12 +20,6 @@ const cv::Vec3f kDiscRim(0.29F, 0.54F, 1.0F);
 // Absorption by blood, per um of its depth, BGR: thick vessels in HRF keep 0.83, 0.6 and 0.935 of the light.
 const cv::Vec3f kVenous(0.0028F, 0.0080F, 0.0014F);
 const cv::Vec3f kArterial(0.0021F, 0.0066F, 0.0006F);
-
-double smoothStep(double t)
-{
-  const double s = std::clamp(t, 0.0, 1.0);
-  return s * s * (3.0 - 2.0 * s);
-}
 
 struct Layers {
   cv::Mat_<float> broad;    // pigment over mm
@@ -79,7 +74,7 @@ cv::Mat_<float> fibresOf(const RetinaPlan& plan, cv::Size size, double um_per_px
       const double dx = x * um_per_px - plan.disc.x();
       const double dy = y * um_per_px - plan.disc.y();
       const double distance = std::hypot(dx, dy);
-      const double fade = std::exp(-distance / 2200.0) * smoothStep((distance - plan.disc_radius) / 500.0);
+      const double fade = std::exp(-distance / 2200.0) * retina::smoothstep((distance - plan.disc_radius) / 500.0);
       if (fade < 0.02) continue;
       const double turn = std::atan2(dy, dx) + 0.25 * std::sin(2.0 * std::atan2(dy, dx)) * distance / 4000.0;
       const auto u = static_cast<float>((turn / 6.2832 + 0.55) * 1300.0);
@@ -140,9 +135,9 @@ class Ground {
     const double crescent =
         std::exp(-std::pow((wavy - 1.07) / 0.07, 2)) * std::clamp(0.4 + 0.8 * towards_fovea, 0.0, 1.0);
     colour *= static_cast<float>(1.0 - 0.18 * crescent);
-    const double inside = smoothStep((1.06 - wavy) / 0.12);
+    const double inside = retina::smoothstep((1.06 - wavy) / 0.12);
     if (inside <= 0.0) return colour;
-    const double cup = smoothStep((cup_ + 0.15 - (offset - Eigen::Vector2d(0.12, 0.0)).norm()) / 0.3);
+    const double cup = retina::smoothstep((cup_ + 0.15 - (offset - Eigen::Vector2d(0.12, 0.0)).norm()) / 0.3);
     const auto pale = static_cast<float>((0.92 + 0.1 * offset.x() * tilt_ + 0.15 * cup) * std::exp(0.5 * pigment));
     const cv::Vec3f rim = 0.25F * colour + 0.75F * kDiscRim;
     const cv::Vec3f disc = pale * (static_cast<float>(1.0 - cup) * rim + static_cast<float>(cup) * kDisc);
