@@ -13,7 +13,8 @@
 
 namespace eyeslam::messaging {
 
-/// Where a part of the tool is: manipulator's frame, m, right-handed; its axes as a unit quaternion.
+/// Where a part of the tool is: manipulator's frame, m, right-handed; its axes as a unit quaternion, z along the shaft,
+/// from the handle towards the tip.
 struct ToolPose {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
