@@ -25,7 +25,7 @@ bool goTogether(const OperatorWish& wish)
 template <class Copy, class Message, class Fixture>
 void listFixture(Copy& copy, Message& message, Fixture& fixture)
 {
-  copy.choice(message.fixture, fixture.kind, FixtureKind::standoff);
+  copy.choice(message.fixture, fixture.kind, FixtureKind::calibration);
   copy.number(message.vessel, fixture.vessel, {-1.0, kAnyNumber.highest});
   copy.numbers(message.point_px, fixture.point_px, kImage_px);
   copy.number(message.standoff, fixture.standoff, {0.0, 0.02});

@@ -14,7 +14,7 @@ namespace eyeslam::messaging {
 using Hash = std::array<std::uint8_t, 32>;
 
 enum class WantedMode { standby, ready, assist, laser };
-enum class FixtureKind { none, filter, scaling, point, vessel, standoff };
+enum class FixtureKind { none, filter, scaling, point, vessel, standoff, calibration };
 
 /// The virtual fixture that the human chose. Map frame, full-resolution px.
 struct WantedFixture {
