@@ -16,8 +16,10 @@ enum class Reason : std::int16_t {
   ambiguous = 4,       ///< two places fit alike
   poor_match = 5,      ///< nothing in the map fits
   // 6 is free: it was never given
-  searching = 7,  ///< lost; the search of the whole map goes on in the next frame
-  noise = 8,      ///< the picture is noise, so no map is started from it
+  searching = 7,       ///< lost; the search of the whole map goes on in the next frame
+  noise = 8,           ///< the picture is noise, so no map is started from it
+  frozen = 9,          ///< a live picture is the last one again
+  record_failed = 10,  ///< the recording cannot be written (disk full): vision has stopped
   // Fixtures: what stands between the hand and its goal
   input_not_finite = 20,  ///< an input was not a finite, plausible number, or a pose not rigid
   bad_time_step = 21,     ///< the time since the last cycle was not positive
@@ -100,6 +102,24 @@ enum class Reason : std::int16_t {
   spot_off_target = 138,    ///< in the newest frame
   tip_moves = 139,          ///< too fast
   tip_unsettled = 140,      ///< not long enough at its goal
+  // Burning a plan
+  plan_scale = 160,         ///< its um per px differs from the retina's
+  plan_done = 161,          ///< no target is left that may be burnt
+  pulse_unconfirmed = 162,  ///< the laser has not said yet what became of the last pulse
+  pulse_refused = 163,      ///< the laser did not begin it
+  pulse_cut = 164,          ///< it ended early
+  pose_not_new = 165,       ///< a pulse begins right after a pose alone
+  burns_full = 166,         ///< no room left to remember what was burnt
+  dwelling = 167,           ///< the dwell at the target is not over
+  // Calibration
+  calibrating = 168,  ///< tips are being gathered
+  // Devices: why a command moves nothing or emits nothing
+  no_command = 170,      ///< none has come yet
+  other_mode = 171,      ///< the command asks for the null, or for the controller's own tremor filter
+  not_powered = 172,     ///< the motors
+  pulse_too_long = 173,  ///< for this laser
+  power_too_high = 174,  ///< for this laser
+  command_lapsed = 175,  ///< a pulse was no longer held, so it ended early
 };
 
 /// The word of a reason, as in `trajectory.csv`; empty for `none`.
