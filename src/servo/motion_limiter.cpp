@@ -40,10 +40,11 @@ MotionLimiter::MotionLimiter(const MotionLimiterOptions& options) noexcept
       reach_(options.reach_mm * kMilli)
 {}
 
-void MotionLimiter::standAt(const Eigen::Vector3d& goal) noexcept
+void MotionLimiter::standAt(const Eigen::Vector3d& goal, const Eigen::Vector3d& deflection) noexcept
 {
-  if (!goal.allFinite()) return;
+  if (!goal.allFinite() || !deflection.allFinite()) return;
   goal_ = goal;
+  deflection_ = shortened(deflection, reach_);
   velocity_.setZero();
 }
 

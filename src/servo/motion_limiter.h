@@ -45,8 +45,8 @@ class MotionLimiter {
 
   explicit MotionLimiter(const MotionLimiterOptions& options) noexcept;
 
-  /// The goal stands here from now on; for a start, never within a motion. What is not finite is ignored.
-  void standAt(const Eigen::Vector3d& goal) noexcept;
+  /// Goal and deflection stand here from now on; for a start, never within a motion. What is not finite is ignored.
+  void standAt(const Eigen::Vector3d& goal, const Eigen::Vector3d& deflection = Eigen::Vector3d::Zero()) noexcept;
   /// One step towards what is wanted. Not finite: the goal brakes to a stand.
   const Eigen::Vector3d& goal(const Eigen::Vector3d& wanted, double time_s) noexcept;
   /// One step of the deflection towards what is wanted. Not finite: it stays.

@@ -96,6 +96,16 @@ Reason RegistrationTrim::correct(const SeenTip& seen) noexcept
   return Reason::none;
 }
 
+void RegistrationTrim::rebase(const Eigen::Affine2d& new_T_old) noexcept
+{
+  const Eigen::Vector2d offset = new_T_old * centre_ - centre_ + new_T_old.linear() * offset_;
+  const Eigen::Matrix2d linear = new_T_old.linear() * linear_;
+  corrections_.row(0) = offset.transpose();
+  corrections_.bottomRows<2>() = kLever * (linear - Eigen::Matrix2d::Identity()).transpose();
+  measured_.transform([&new_T_old](const Eigen::Vector2d& old) -> Eigen::Vector2d { return new_T_old * old; });
+  keepSolution();
+}
+
 void RegistrationTrim::keepSolution() noexcept
 {
   offset_ = corrections_.row(0).transpose();

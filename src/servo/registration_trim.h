@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 
 #include "eyeslam/retina/options.h"
@@ -66,6 +67,10 @@ class RegistrationTrim {
   retina::Reason observe(std::int64_t utime, const Eigen::Vector2d& measured) noexcept;
   /// The tip as it was seen. @return none; tip_late, tip_not_finite, tip_far: refused
   retina::Reason correct(const SeenTip& seen) noexcept;
+
+  /// The registration was replaced: what it measured at `old` it measures at `new_T_old old` now. The sum of both
+  /// stays what it was.
+  void rebase(const Eigen::Affine2d& new_T_old) noexcept;
 
   /// Where the registration puts what is truly here, and back.
   Eigen::Vector2d toMeasured(const Eigen::Vector2d& seen) const noexcept;

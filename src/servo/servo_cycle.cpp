@@ -2,7 +2,7 @@
 #include "eyeslam/servo/servo_cycle.h"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 
 #include "eyeslam/servo/loop_time.h"
 
@@ -26,6 +26,8 @@ ServoCycle::ServoCycle(const ServoCycleOptions& options, const ViewPlacement& pl
       integral_(options.integral),
       limiter_(options.limits),
       plant_(options.plant),
+      hand_filter_(options.hand_filter),
+      trust_(options.hand_over),
       null_at_controller_(options.null_at == "controller")
 {
   setLead(options.lead_ms * kMilli);
@@ -63,6 +65,7 @@ void ServoCycle::take(const ManipulatorState& state) noexcept
   const Reason refused = hand_.correct(state.utime, state.null);
   refusals_.count(refused);
   if (refused != Reason::none) return;
+  if (state_ && seconds(state.utime - state_->utime) > options_.state_limit_ms * kMilli) hand_filter_.reset(state.null);
   if (state.port) refusals_.count(retina_.observePort(state.utime, *state.port));
   refusals_.count(trim_.observe(state.utime, (view_T_manipulator_ * state.tip).head<2>()));
   if (state_ && goals_.covers(state.utime) && !command_.saturated)
@@ -86,7 +89,7 @@ Reason ServoCycle::whatIsMissing(std::int64_t now) const noexcept
 
 const Outlook& ServoCycle::observe(const CycleInput& input) noexcept
 {
-  if (started_ && input.now <= now_) {
+  if (now_ != 0 && input.now <= now_) {
     refusals_.count(Reason::cycle_late);
     outlook_.step_s = 0.0;
     return outlook_;
@@ -103,21 +106,88 @@ const Outlook& ServoCycle::observe(const CycleInput& input) noexcept
   if (state_) {
     outlook_.state_age_s = seconds(now_ - state_->utime);
     outlook_.null_retina = outlook_.retina.toRetina(toView(nullAt(outlook_.utime)));
+    followHand();
   }
   return outlook_;
 }
 
-const ServoCommand& ServoCycle::command(const Eigen::Vector3d& goal_retina) noexcept
+void ServoCycle::followHand() noexcept
 {
-  command_.reason = outlook_.reason;
-  if (command_.reason == Reason::none && !goal_retina.allFinite()) command_.reason = Reason::goal_not_finite;
+  const Eigen::Vector3d null = nullAt(outlook_.utime);
+  if (!null.allFinite()) return;
+  outlook_.hand = hand_filter_.filter(null, outlook_.step_s);
+  if (!outlook_.hand.allFinite()) hand_filter_.reset(null);
+}
+
+void ServoCycle::setPlacement(const ViewPlacement& placement) noexcept
+{
+  if (!placement.manipulator_T_view.matrix().allFinite()) return;
+  const Eigen::Affine3d view_T_manipulator = placement.manipulator_T_view.inverse();
+  if (!view_T_manipulator.matrix().allFinite()) return;
+  // Where the tip works now: a line of sight at an angle makes the change depend on the height.
+  const double height = state_ ? (view_T_manipulator_ * state_->tip).z() : 0.0;
+  const Eigen::Affine3d change = view_T_manipulator * placement_.manipulator_T_view;
+  Eigen::Affine2d new_T_old;
+  new_T_old.linear() = change.linear().topLeftCorner<2, 2>();
+  new_T_old.translation() = (change * Eigen::Vector3d(0.0, 0.0, height)).head<2>();
+  placement_ = {placement.manipulator_T_view, placement_.centre};
+  view_T_manipulator_ = view_T_manipulator;
+  if ((new_T_old * placement_.centre - placement_.centre).norm() > kCarried_m) {
+    trim_ = RegistrationTrim(options_.trim, placement_.centre);
+  } else {
+    trim_.rebase(new_T_old);
+  }
+}
+
+void ServoCycle::startView(const ViewPlacement& placement) noexcept
+{
+  placement_ = placement;
+  view_T_manipulator_ = placement.manipulator_T_view.inverse();
+  trim_ = RegistrationTrim(options_.trim, placement.centre);
+  forgetRetina();
+}
+
+void ServoCycle::rest() noexcept
+{
+  started_ = false;
+  trust_ = HandOver(options_.hand_over);
+  aside_.setZero();
+  integral_.reset();
+  goals_.clear();
+  command_ = ServoCommand();
+}
+
+void ServoCycle::begin() noexcept
+{
+  const Eigen::Vector3d deflection = state_->tip - state_->null;
+  limiter_.standAt(state_->tip, deflection);
+  plant_.standAt(limiter_.withinReach(deflection));
+  started_ = true;
+}
+
+const ServoCommand& ServoCycle::command(const Eigen::Vector3d& goal_retina, double share) noexcept
+{
+  return steer(toManipulator(outlook_.retina.toView(goal_retina)), share, outlook_.reason);
+}
+
+const ServoCommand& ServoCycle::commandTip(const Eigen::Vector3d& goal, double share) noexcept
+{
+  const bool has_state = outlook_.reason != Reason::no_state && outlook_.reason != Reason::state_stale;
+  return steer(goal, share, has_state ? Reason::none : outlook_.reason);
+}
+
+const ServoCommand& ServoCycle::steer(const Eigen::Vector3d& wanted, double share, Reason why) noexcept
+{
+  command_.reason = why == Reason::none && !wanted.allFinite() ? Reason::goal_not_finite : why;
   refusals_.count(command_.reason);
   if (command_.reason == Reason::no_state || command_.reason == Reason::state_stale) return command_;
-  if (!started_) limiter_.standAt(state_->tip);
-  started_ = true;
+  if (!started_) begin();
   const bool known = command_.reason == Reason::none;
-  const Eigen::Vector3d nowhere = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  command_.goal = limiter_.goal(known ? toManipulator(outlook_.retina.toView(goal_retina)) : nowhere, outlook_.step_s);
+  if (known) aside_ = wanted - outlook_.hand;
+  command_.share = std::clamp(std::isfinite(share) ? share : 0.0, 0.0, 1.0) * trust_.update(known, outlook_.step_s);
+  const bool whole = known && command_.share == 1.0;
+  command_.goal =
+      limiter_.goal(whole ? wanted : Eigen::Vector3d(outlook_.hand + command_.share * aside_), outlook_.step_s);
   if (goals_.empty() || outlook_.utime > goals_.utime(0)) goals_.push(outlook_.utime, command_.goal);
   const Eigen::Vector3d deflection = command_.goal + integral_.correction() - nullAt(outlook_.utime);
   command_.deflection = limiter_.deflection(deflection, outlook_.step_s);

@@ -71,8 +71,8 @@ struct ServoCommand {
 ///     const ServoCommand& command = cycle.command(goal);
 ///
 /// What is not guided follows the hand without its tremor. Whatever happens between guided and not, the goal keeps its
-/// speed and acceleration within their limits. Refused inputs change nothing and are counted by reason. Never throws, never allocates, about 5 us of CPU.
-/// Source: loop study, section 2.
+/// speed and acceleration within their limits. Refused inputs change nothing and are counted by reason. Never throws,
+/// never allocates, about 5 us of CPU. Source: loop study, section 2.
 class ServoCycle {
  public:
   static constexpr double kCarried_m = 300e-6;

@@ -3,7 +3,9 @@
 
 #include <string>
 
+#include "eyeslam/fixtures/tremor_filter.h"
 #include "eyeslam/retina/options.h"
+#include "eyeslam/servo/hand_over.h"
 #include "eyeslam/servo/integral_action.h"
 #include "eyeslam/servo/motion_limiter.h"
 #include "eyeslam/servo/null_predictor.h"
@@ -26,6 +28,8 @@ struct ServoCycleOptions {
   IntegralActionOptions integral;
   MotionLimiterOptions limits;
   PlantInverseOptions plant;
+  fixtures::TremorFilterOptions hand_filter;
+  HandOverOptions hand_over;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor& visitor)
@@ -49,6 +53,8 @@ struct ServoCycleOptions {
     visitor.group("integral", self.integral);
     visitor.group("limits", self.limits);
     visitor.group("plant", self.plant);
+    visitor.group("hand_filter", self.hand_filter);
+    visitor.group("hand_over", self.hand_over);
   }
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "eyeslam/servo/supervisor.h"
 
-#include <algorithm>
-#include <cmath>
+#include <array>
+#include <initializer_list>
 
 namespace eyeslam::servo {
 
@@ -105,12 +105,6 @@ State Supervisor::update(const Wish& wish, const Health& health)
     reason_ = isWanted(state_, wish.mode) ? Reason::none : obstacle(wish, health);
   }
   return state_;
-}
-
-double HandOver::update(bool guides, double dt)
-{
-  if (std::isfinite(dt) && dt > 0.0) progress_ = std::clamp(progress_ + (guides ? rate_ : -rate_) * dt, 0.0, 1.0);
-  return share();
 }
 
 }  // namespace eyeslam::servo

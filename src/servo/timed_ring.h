@@ -21,6 +21,15 @@ class TimedRing {
     if (size_ < Count) ++size_;
   }
   void clear() { size_ = 0; }
+  /// Replaces each value by change(value).
+  template <class Change>
+  void transform(const Change& change)
+  {
+    for (std::size_t age = 0; age < size_; ++age) {
+      Entry& entry = entries_[(next_ + Count - 1 - age) % Count];
+      entry.value = change(entry.value);
+    }
+  }
 
   bool empty() const { return size_ == 0; }
   std::size_t size() const { return size_; }

@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "eyeslam/servo/hand_over.h"
+
 using namespace eyeslam;
 using eyeslam::retina::Reason;
 using eyeslam::servo::HandOver;
