@@ -84,7 +84,9 @@ class Link {
 template <class Message>
 class Publisher {
  public:
-  explicit Publisher(Link& link, std::string channel = channelOf<Message>()) : link_(link), channel_(std::move(channel))
+  /// @param session  0: the link's; another one is for a device that has been started anew
+  explicit Publisher(Link& link, std::string channel = channelOf<Message>(), std::int64_t session = 0)
+      : link_(link), channel_(std::move(channel)), session_(session == 0 ? link.session() : session)
   {}
 
   /// @param message     all fields but utime_sent, seq, session and tag are the caller's; these are filled
@@ -94,7 +96,7 @@ class Publisher {
   {
     message.utime_sent = utime_sent;
     message.seq = next_seq_++;
-    message.session = link_.session();
+    message.session = session_;
     bytes_.resize(static_cast<std::size_t>(message.getEncodedSize()));
     if (!encode(message)) return false;
     if constexpr (HasTag<Message>::value) sign(message);
@@ -132,6 +134,7 @@ class Publisher {
 
   Link& link_;
   std::string channel_;
+  std::int64_t session_;
   std::int64_t next_seq_ = 0;
   Message message_{};  // of the last value
   std::vector<std::uint8_t> bytes_;

@@ -52,6 +52,8 @@ class Instrument {
   Instrument(const InstrumentOptions& options, cv::Size view, double px_scale, double duration_s, std::uint64_t seed);
 
   InstrumentPose at(double t_s) const;
+  /// Of the shaft, px.
+  double width() const { return width_px_; }
 
   /// Blends the shaft into `picture` (CV_32FC4, white = 1); its light is even, for it is much nearer to the light pipe.
   /// @return  how many pixels it covers by half or more, counted where `field` > 0.5

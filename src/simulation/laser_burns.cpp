@@ -48,12 +48,15 @@ void LaserBurns::burn(cv::Mat& canvas, cv::Point2d place) const
 void LaserBurns::addSpot(cv::Mat& picture, cv::Point2d place, int frame) const
 {
   if (!hasLaser()) return;
+  const double pulse = flash(frame);
+  addLight(picture, place, 1.0 - pulse, pulse);
+}
+
+void LaserBurns::addLight(cv::Mat& picture, cv::Point2d place, double aiming, double flash) const
+{
   const double radius = options_.aiming_px * px_scale_;
-  if (flash(frame) > 0.0) {
-    addGlow(picture, place, 1.4 * radius, cv::Scalar(0.8, 1.0, 0.9));
-  } else {
-    addGlow(picture, place, radius, cv::Scalar(0.08, 0.06, 0.25));
-  }
+  if (flash > 0.0) addGlow(picture, place, 1.4 * radius, flash * cv::Scalar(0.8, 1.0, 0.9));
+  if (aiming > 0.0) addGlow(picture, place, radius, aiming * cv::Scalar(0.08, 0.06, 0.25));
 }
 
 }  // namespace eyeslam::simulation

@@ -47,6 +47,8 @@ class LaserBurns {
   void burn(cv::Mat& canvas, cv::Point2d place) const;
   /// Adds the aiming spot, or the pulse's light, to a picture (CV_32FC4, white = 1).
   void addSpot(cv::Mat& picture, cv::Point2d place, int frame) const;
+  /// The same by shares of the exposure, [0, 1], in which the aiming beam and the pulse were on.
+  void addLight(cv::Mat& picture, cv::Point2d place, double aiming, double flash) const;
 
  private:
   LaserBurnsOptions options_;

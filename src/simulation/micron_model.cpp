@@ -79,15 +79,42 @@ void MicronModel::measure(const Eigen::Vector3d& null, const Eigen::Vector2d& po
 Eigen::Vector3d MicronModel::wanted() const
 {
   if (!command_is_tip_) return command_;
-  return command_ - readings_[static_cast<std::size_t>(periods_) % kReadings].null;
+  return command_ - fresh().null;
+}
+
+Eigen::Vector3d MicronModel::withinReach(const Eigen::Vector3d& way) const
+{
+  const double lateral = options_.reach_mm * kMilli;
+  if (shaft_.isZero(0.0)) return shortened(way, lateral);
+  const double along = way.dot(shaft_);
+  const double axial = options_.reach_axial_mm * kMilli;
+  const Eigen::Vector3d across = way - along * shaft_;
+  if (across.norm() <= lateral && std::abs(along) <= axial) return way;
+  return shortened(across, lateral) + std::clamp(along, -axial, axial) * shaft_;
+}
+
+MicronLimits MicronModel::outOfReach(const Eigen::Vector3d& way) const
+{
+  const double lateral = options_.reach_mm * kMilli;
+  MicronLimits limits;
+  if (shaft_.isZero(0.0)) {
+    limits.lateral = limits.axial = way.norm() > lateral;
+  } else {
+    limits.lateral = (way - way.dot(shaft_) * shaft_).norm() > lateral;
+    limits.axial = std::abs(way.dot(shaft_)) > options_.reach_axial_mm * kMilli;
+  }
+  return limits;
 }
 
 void MicronModel::actuate(const Eigen::Vector3d& target, double time_s)
 {
   const Eigen::Vector3d pull = rate_ * rate_ * (target - position_) - 2.0 * options_.damping * rate_ * velocity_;
-  velocity_ = shortened(velocity_ + time_s * shortened(pull, options_.acceleration_m_s2), options_.speed_mm_s * kMilli);
+  limits_.acceleration |= pull.norm() > options_.acceleration_m_s2;
+  const Eigen::Vector3d faster = velocity_ + time_s * shortened(pull, options_.acceleration_m_s2);
+  limits_.speed |= faster.norm() > options_.speed_mm_s * kMilli;
+  velocity_ = shortened(faster, options_.speed_mm_s * kMilli);
   const Eigen::Vector3d moved = position_ + time_s * velocity_;
-  position_ = shortened(moved, options_.reach_mm * kMilli);
+  position_ = withinReach(moved);
   if (position_ != moved) velocity_ = (position_ - (moved - time_s * velocity_)) / time_s;
 }
 
@@ -95,8 +122,8 @@ void MicronModel::step(const Eigen::Vector3d& null, const Eigen::Vector2d& port)
 {
   // The command holds from the last step to this one; a controller that subtracts the null does so once a period.
   const Eigen::Vector3d asked = periods_ == 0 ? Eigen::Vector3d::Zero() : wanted();
-  const Eigen::Vector3d target = shortened(asked, options_.reach_mm * kMilli);
-  saturated_ = asked.norm() > options_.reach_mm * kMilli;
+  const Eigen::Vector3d target = withinReach(asked);
+  limits_ = outOfReach(asked);
   for (int i = 0; i < kSubsteps; ++i) {
     commands_[next_command_] = target;
     actuate(commands_[(next_command_ + kCommands - delay_) % kCommands], period_s_ / kSubsteps);

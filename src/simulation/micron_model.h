@@ -20,6 +20,12 @@ struct MicronReading {
   Eigen::Vector2d port = Eigen::Vector2d::Zero();
 };
 
+/// What bounded the deflection since the step before.
+struct MicronLimits {
+  bool lateral = false, axial = false;  ///< the command is out of reach; without a known shaft always both
+  bool speed = false, acceleration = false;
+};
+
 /// The manipulator in the hand: its tip is the hand's null + a deflection that follows its command late, as a damped
 /// oscillator of bounded speed, acceleration and reach. World's frame, m. Source: loop study, section 1.
 ///
@@ -35,6 +41,9 @@ class MicronModel {
 
   /// One period later: the hand is here, the last command still holds.
   void step(const Eigen::Vector3d& null, const Eigen::Vector2d& port);
+  /// The reach is a cylinder about the null along this direction; before the first call it is a ball.
+  /// @param shaft  unit vector
+  void setShaft(const Eigen::Vector3d& shaft) { shaft_ = shaft; }
   void commandDeflection(const Eigen::Vector3d& deflection);
   /// The controller subtracts the null that it measures at each step itself.
   void commandTip(const Eigen::Vector3d& goal);
@@ -42,7 +51,10 @@ class MicronModel {
   /// The truth.
   const Eigen::Vector3d& tip() const { return tip_; }
   Eigen::Vector3d deflection() const { return position_.cwiseProduct(gain_); }
-  bool isSaturated() const { return saturated_; }
+  bool isSaturated() const { return limits_.lateral || limits_.axial; }
+  const MicronLimits& limits() const { return limits_; }
+  /// What it measures at this very instant: its own controller's.
+  const MicronReading& fresh() const { return readings_[static_cast<std::size_t>(periods_) % kReadings]; }
   /// What a servo hears now, as old as the options say.
   const MicronReading& state() const;
   /// Delay + 2 z / w, s: what a controller says of itself.
@@ -56,6 +68,8 @@ class MicronModel {
   void measure(const Eigen::Vector3d& null, const Eigen::Vector2d& port);
   void actuate(const Eigen::Vector3d& target, double time_s);
   Eigen::Vector3d wanted() const;
+  Eigen::Vector3d withinReach(const Eigen::Vector3d& deflection) const;
+  MicronLimits outOfReach(const Eigen::Vector3d& deflection) const;
 
   MicronOptions options_;
   double period_s_, rate_;
@@ -69,7 +83,8 @@ class MicronModel {
   std::int64_t periods_ = 0;
   Eigen::Vector3d command_ = Eigen::Vector3d::Zero();
   bool command_is_tip_ = false;
-  bool saturated_ = false;
+  Eigen::Vector3d shaft_ = Eigen::Vector3d::Zero();
+  MicronLimits limits_;
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero(), velocity_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();
 };

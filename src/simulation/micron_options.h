@@ -13,6 +13,7 @@ struct MicronOptions {
   double speed_mm_s = 30.0;
   double acceleration_m_s2 = 10.0;
   double reach_mm = 2.0;
+  double reach_axial_mm = 2.0;
   double gain_error = 0.03;
   double bend_um = 6.0;
   double bend_hz = 1.0;
@@ -29,7 +30,10 @@ struct MicronOptions {
     visitor.field("damping", self.damping, Range{0.1, 5}, "", "of the actuators");
     visitor.field("speed_mm_s", self.speed_mm_s, Range{0.1, 1000}, "mm/s", "largest speed of the deflection");
     visitor.field("acceleration_m_s2", self.acceleration_m_s2, Range{0.1, 1000}, "m/s^2", "largest acceleration");
-    visitor.field("reach_mm", self.reach_mm, Range{0.05, 10}, "mm", "largest deflection; source: facts, B1");
+    visitor.field("reach_mm", self.reach_mm, Range{0.05, 10}, "mm",
+                  "largest deflection, across the shaft where that is known; source: facts, B1");
+    visitor.field("reach_axial_mm", self.reach_axial_mm, Range{0.05, 10}, "mm",
+                  "largest deflection along the shaft, where that is known; source: facts, B1, cylinder 4 x 4 mm");
     visitor.field("gain_error", self.gain_error, Range{0, 0.5}, "",
                   "by which each axis moves too far or too little, the sign drawn");
     visitor.field("bend_um", self.bend_um, Range{0, 500}, "um", "RMS per axis of the needle's bending, unmeasured");

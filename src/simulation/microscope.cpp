@@ -43,17 +43,41 @@ Microscope::Microscope(const MicroscopeOptions& options, const View& view, cv::M
 RenderedFrame Microscope::expose(int frame, const ViewMotion& motion)
 {
   RenderedFrame result;
-  result.frame = frame;
-  result.t_s = frame / view_.fps;
-  result.map_T_frame = motion.at(result.t_s);
+  begin(frame, motion, result);
   result.tool = instrument_.at(result.t_s);
-  exposeRetina(result.t_s, motion);
-  defocus(result.t_s);
-  develop(result.t_s, result.tool, result);
+  light(result.t_s, result);
+  if (result.tool.present) laser_.addSpot(picture_, result.tool.tip, result.frame);
+  addBlooms(result.t_s, result);
   sensor_.read(picture_, result.image);
   fire(result);
   if (!result.tool.present) result.tool.tip = {};
   return result;
+}
+
+RenderedFrame Microscope::expose(int frame, const ViewMotion& motion, const ToolInView& seen)
+{
+  RenderedFrame result;
+  begin(frame, motion, result);
+  result.tool = seen.tool;
+  if (result.tool.shaft_width <= 0.0) result.tool.shaft_width = instrument_.width();
+  light(result.t_s, result);
+  laser_.addLight(picture_, seen.spot, seen.aiming, seen.flash);
+  addBlooms(result.t_s, result);
+  sensor_.read(picture_, result.image);
+  result.fired = seen.flash > 0.0;
+  if (!result.tool.present) result.tool.tip = {};
+  return result;
+}
+
+void Microscope::burn(cv::Point2d place_map) { laser_.burn(canvas_, place_map - map_origin_); }
+
+void Microscope::begin(int frame, const ViewMotion& motion, RenderedFrame& result)
+{
+  result.frame = frame;
+  result.t_s = frame / view_.fps;
+  result.map_T_frame = motion.at(result.t_s);
+  exposeRetina(result.t_s, motion);
+  defocus(result.t_s);
 }
 
 // The mean over the exposure along the true motion, its middle at the frame's time.
@@ -79,8 +103,9 @@ void Microscope::defocus(double t)
   if (sigma > 0.15) cv::GaussianBlur(picture_, picture_, {}, sigma, sigma, cv::BORDER_REPLICATE);
 }
 
-void Microscope::develop(double t, const InstrumentPose& tool, RenderedFrame& result)
+void Microscope::light(double t, RenderedFrame& result)
 {
+  const InstrumentPose& tool = result.tool;
   illumination_.lightAt(t, light_);
   instrument_.castShadow(tool, light_);
   const cv::Vec4f white(static_cast<float>(optics_.white_blue), static_cast<float>(optics_.white_green),
@@ -92,7 +117,10 @@ void Microscope::develop(double t, const InstrumentPose& tool, RenderedFrame& re
   }
   const int covered = instrument_.draw(tool, illumination_.field(), picture_);
   result.tool_cover = static_cast<double>(covered) / static_cast<double>(view_.size.area());
-  if (tool.present) laser_.addSpot(picture_, tool.tip, result.frame);
+}
+
+void Microscope::addBlooms(double t, RenderedFrame& result)
+{
   blooms_.addTo(picture_, t);
   const double on = illumination_.switchedOn(t);
   result.visible = on >= kSeen;
@@ -109,7 +137,7 @@ void Microscope::fire(RenderedFrame& result)
   const Eigen::Vector2d centre((view_.size.width - 1) / 2.0, (view_.size.height - 1) / 2.0);
   const Eigen::Vector2d tip(result.tool.tip.x, result.tool.tip.y);
   const Eigen::Vector2d map = centre + result.map_T_frame * (tip - centre);
-  laser_.burn(canvas_, {map.x() - map_origin_.x, map.y() - map_origin_.y});
+  burn({map.x(), map.y()});
   result.fired = true;
 }
 

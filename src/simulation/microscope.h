@@ -73,6 +73,14 @@ struct RenderedFrame {
   bool fired = false;         ///< a pulse began
 };
 
+/// Instrument and laser light in a frame, mean over its exposure; frame px.
+struct ToolInView {
+  InstrumentPose tool;  ///< a shaft without width takes the microscope's
+  cv::Point2d spot;     ///< where the beam meets the retina
+  double aiming = 0.0;  ///< share of the exposure in which the aiming beam is on, [0, 1]
+  double flash = 0.0;   ///< the same of the treatment beam
+};
+
 /// Looks at a canvas and makes frames of it.
 class Microscope {
  public:
@@ -90,12 +98,18 @@ class Microscope {
 
   /// The frame whose exposure is centred at frame / fps. Call with growing numbers: burns stay.
   RenderedFrame expose(int frame, const ViewMotion& motion);
+  /// The same with an instrument and a laser that others move.
+  RenderedFrame expose(int frame, const ViewMotion& motion, const ToolInView& seen);
+  /// Turns the retina white around a place of the map, px; it stays so.
+  void burn(cv::Point2d place_map);
   const Illumination& illumination() const { return illumination_; }
 
  private:
   void exposeRetina(double t_s, const ViewMotion& motion);
   void defocus(double t_s);
-  void develop(double t_s, const InstrumentPose& tool, RenderedFrame& result);
+  void begin(int frame, const ViewMotion& motion, RenderedFrame& result);
+  void light(double t_s, RenderedFrame& result);
+  void addBlooms(double t_s, RenderedFrame& result);
   void fire(RenderedFrame& result);
 
   OpticsOptions optics_;

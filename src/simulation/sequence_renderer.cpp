@@ -2,10 +2,10 @@
 #include "eyeslam/simulation/sequence_renderer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
+#include "eyeslam/simulation/view_canvas.h"
 #include "eyeslam/simulation/view_planner.h"
 
 namespace eyeslam::simulation {
@@ -14,41 +14,6 @@ namespace {
 
 constexpr double kUsualWidth_px = 800.0;
 constexpr double kTwoPi = 6.28318530717958647693;
-
-// Dots in a square grid: the finest that a magnified print shows (rendered sequences: 4.83 px).
-void printScreen(cv::Mat_<cv::Vec3f>& bgr, double strength)
-{
-  constexpr double kStep = kTwoPi / 4.83;
-  for (int y = 0; y < bgr.rows; ++y) {
-    for (int x = 0; x < bgr.cols; ++x) {
-      bgr(y, x) *= static_cast<float>(1.0 + strength * std::sin(kStep * x) * std::sin(kStep * y));
-    }
-  }
-}
-
-cv::Mat canvasOf(const Fundus& fundus, cv::Rect area)
-{
-  cv::Mat canvas(area.size(), CV_32FC4);
-  for (int y = 0; y < area.height; ++y) {
-    for (int x = 0; x < area.width; ++x) {
-      const cv::Vec3f& colour = fundus.bgr(area.y + y, area.x + x);
-      canvas.at<cv::Vec4f>(y, x) = cv::Vec4f(colour[0], colour[1], colour[2], 0.0F);
-    }
-  }
-  return canvas;
-}
-
-Fundus prepared(const Fundus& fundus, const TissueOptions& tissue, double zoom)
-{
-  Fundus result = std::abs(zoom - 1.0) < 1e-9 ? fundus : resampled(fundus, zoom);
-  if (!tissue.textured) result = withoutTexture(result);
-  if (tissue.contrast != 1.0) result = withContrast(result, tissue.contrast);
-  if (tissue.screen > 0.0) {
-    result.bgr = result.bgr.clone();
-    printScreen(result.bgr, tissue.screen);
-  }
-  return result;
-}
 
 // Nobody sees the eye's largest jumps of a video whose light goes out.
 void jumpInTheDark(EyeMotion& motion, const Condition& condition, const SequenceOptions& options)
@@ -80,7 +45,7 @@ struct SequenceRenderer::Scene {
     const double px_scale = options.size.width / kUsualWidth_px;
     EyeMotion motion(condition.motion, px_scale * condition.motion_factor, options.frames / options.fps, options.seed);
     jumpInTheDark(motion, condition, options);
-    const Fundus retina = prepared(fundus, condition.tissue, zoom);
+    const Fundus retina = preparedFundus(fundus, condition.tissue, zoom);
     const double rim = condition.microscope.illumination.rim_radius_px * px_scale;
     const ViewPlan view = planView(retina, motion, {options.size, options.fps, options.frames, rim, options.seed});
     const cv::Point2d centre((options.size.width - 1) / 2.0, (options.size.height - 1) / 2.0);

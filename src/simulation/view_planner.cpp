@@ -39,7 +39,7 @@ std::vector<Eigen::Vector2d> outline(const ViewPlanRequest& request)
 }
 
 // The outline over the whole motion, relative to the start.
-std::vector<Eigen::Vector2d> swept(const EyeMotion& motion, const ViewPlanRequest& request)
+std::vector<Eigen::Vector2d> swept(const ViewMotion& motion, const ViewPlanRequest& request)
 {
   const auto edge = outline(request);
   std::vector<Eigen::Vector2d> points;
@@ -87,7 +87,7 @@ cv::Rect areaOf(const std::vector<Eigen::Vector2d>& points, cv::Point start, cv:
 
 }  // namespace
 
-ViewPlan planView(const Fundus& fundus, const EyeMotion& motion, const ViewPlanRequest& request)
+ViewPlan planView(const Fundus& fundus, const ViewMotion& motion, const ViewPlanRequest& request)
 {
   const cv::Size size = fundus.known.size();
   const std::string sizes = std::to_string(size.width) + "x" + std::to_string(size.height) +

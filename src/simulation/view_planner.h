@@ -3,8 +3,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "eyeslam/simulation/eye_motion.h"
 #include "eyeslam/simulation/fundus.h"
+#include "eyeslam/simulation/view_motion.h"
 
 namespace eyeslam::simulation {
 
@@ -25,6 +25,6 @@ struct ViewPlanRequest {
 
 /// Tries seeded places and takes one from which the whole motion stays on known retina and begins among vessels.
 /// @throws std::invalid_argument when the fundus is smaller than the view, or no place keeps 90 % of it on known retina
-ViewPlan planView(const Fundus& fundus, const EyeMotion& motion, const ViewPlanRequest& request);
+ViewPlan planView(const Fundus& fundus, const ViewMotion& motion, const ViewPlanRequest& request);
 
 }  // namespace eyeslam::simulation
