@@ -18,6 +18,8 @@ struct VideoFrame {
   cv::Mat image;            ///< 8 or 16 bit, one (grey) or three (BGR) channels; valid until the next frame is read
   std::int64_t number = 0;  ///< from 0, in the video
   double t = 0.0;           ///< s since frame 0
+  std::int64_t utime = 0;   ///< us since 1970, middle of the exposure; 0 = the source does not know
+  double exposure = 0.0;    ///< s; 0 = the source does not know
 };
 
 /// Frames one after another, all of one size and type.
