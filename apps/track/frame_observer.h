@@ -12,7 +12,10 @@ class FrameObserver {
   virtual ~FrameObserver() = default;
   /// As soon as a frame was read, before it is tracked.
   virtual void onRead(const files::VideoFrame&) {}
+  /// As soon as it was tracked, before its part of the map is worked on: for what somebody waits for.
   /// @param result  of this frame; its pose speaks full-resolution px
+  virtual void onTracked(const files::VideoFrame&, const tracking::TrackResult&, baselines::Method&) {}
+  /// With its part of the map worked on.
   virtual void onFrame(const files::VideoFrame& frame, const tracking::TrackResult& result,
                        baselines::Method& method) = 0;
   /// After the last frame, before results are renamed into place. @throws FileError when what was written is not whole

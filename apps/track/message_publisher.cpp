@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "track/message_publisher.h"
 
-#include <algorithm>
 #include <optional>
 #include <random>
 
@@ -12,8 +11,7 @@
 namespace eyeslam::apps {
 namespace {
 
-// A map of 1500 x 1200 cells has passed once in 19 s at 30 Hz; 10 kB a frame.
-constexpr int kTilesPerFrame = 8;
+constexpr double kMicroseconds = 1e6;  // a second
 
 // Not 0, and different in every run.
 std::int64_t newSession()
@@ -34,7 +32,7 @@ std::optional<messaging::Key> keyIn(const std::string& file)
 MessagePublisher::MessagePublisher(const std::string& url, const std::string& key_file, double um_per_px,
                                    double frame_rate, const std::string& configuration,
                                    const std::string& configuration_hash)
-    : link_(url, newSession(), keyIn(key_file)), um_per_px_(um_per_px), frame_rate_(frame_rate)
+    : link_(url, newSession(), keyIn(key_file)), vision_(link_, um_per_px, frame_rate)
 {
   mark(mark_t::START, configuration, configuration_hash);
 }
@@ -51,47 +49,26 @@ void MessagePublisher::mark(std::int16_t kind, const std::string& configuration,
   marks_.publish(message, message.utime);
 }
 
-void MessagePublisher::onRead(const files::VideoFrame&) { utime_read_ = utimeNow(); }
-
-void MessagePublisher::onFrame(const files::VideoFrame& frame, const tracking::TrackResult& result,
-                               baselines::Method& method)
+void MessagePublisher::onRead(const files::VideoFrame& frame)
 {
-  const messaging::FrameStamp stamp{utime_read_, frame.number, 0.0};
-  const retina::VesselMap& map = method.vesselMap();
-  publishPose(stamp, result, map);
-  if (const tracking::EyeSlamTracker* tracker = method.eyeSlam()) publishTip(stamp, tracker->getToolTip());
-  publishTiles(stamp, map);
+  const std::int64_t utime = utimeNow();
+  link_.drain({static_cast<std::int64_t>(kMicroseconds * monotonicSeconds()), utime});
+  stamp_ = {frame.utime > 0 ? frame.utime : utime, frame.number, frame.exposure};
 }
 
-void MessagePublisher::publishPose(const messaging::FrameStamp& stamp, const tracking::TrackResult& result,
-                                   const retina::VesselMap& map)
+// What the loop waits for goes out before the map is worked on.
+void MessagePublisher::onTracked(const files::VideoFrame&, const tracking::TrackResult& result,
+                                 baselines::Method& method)
 {
-  const messaging::MapStamp map_stamp{link_.session(), static_cast<std::int64_t>(map.version), um_per_px_};
-  const messaging::RetinaMotion motion{result.tracked, result.reason, result.map_T_frame, frame_rate_ * result.velocity,
-                                       result.covariance};
-  poses_.publish(messaging::RetinaPose{stamp, map_stamp, motion}, stamp.utime, utimeNow());
-}
-
-void MessagePublisher::publishTip(const messaging::FrameStamp& stamp, const tracking::ToolTip& tip)
-{
-  messaging::InstrumentSight sight;
-  sight.frame = stamp;
-  if (tip.present) {
-    sight.tip = {true, {tip.x_px, tip.y_px}, tip.covariance};
-    sight.shaft_angle = tip.shaft_angle;
-    sight.shaft_width_px = tip.shaft_width_px;
+  vision_.publishPose(stamp_, result, method.vesselMap().version, utimeNow());
+  if (const tracking::EyeSlamTracker* tracker = method.eyeSlam()) {
+    vision_.publishInstrument(stamp_, tracker->getToolTip(), {}, utimeNow());
   }
-  tips_.publish(sight, stamp.utime, utimeNow());
 }
 
-void MessagePublisher::publishTiles(const messaging::FrameStamp& stamp, const retina::VesselMap& map)
+void MessagePublisher::onFrame(const files::VideoFrame&, const tracking::TrackResult&, baselines::Method& method)
 {
-  const int tiles = std::min(kTilesPerFrame, messaging::MapTileCycle::tiles(map));
-  for (int i = 0; i < tiles; ++i) {
-    cycle_.next(map, link_.session(), stamp.utime, tile_);
-    tile_.um_per_px = um_per_px_;
-    tiles_.publish(tile_, utimeNow());
-  }
+  vision_.publishTiles(stamp_, method.vesselMap(), utimeNow());
 }
 
 void MessagePublisher::finish() { mark(mark_t::STOP, "", ""); }

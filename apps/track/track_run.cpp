@@ -166,8 +166,10 @@ void TrackRun::trackFrame(const files::VideoFrame& frame)
   const double start = threadCpuMilliseconds();
   const tracking::TrackResult& result = method_->track(frame.image);
   const double localized = threadCpuMilliseconds();
+  for (const auto& observer : observers_) observer->onTracked(frame, result, *method_);
+  const double told = threadCpuMilliseconds();
   method_->updateMap();
-  const files::TrajectoryRow row{frame.number, frame.t, result, localized - start, threadCpuMilliseconds() - localized};
+  const files::TrajectoryRow row{frame.number, frame.t, result, localized - start, threadCpuMilliseconds() - told};
   trajectory_.add(row);
   summary_.add(row);
   last_frame_ = frame.number;

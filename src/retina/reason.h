@@ -102,6 +102,13 @@ enum class Reason : std::int16_t {
   spot_off_target = 138,    ///< in the newest frame
   tip_moves = 139,          ///< too fast
   tip_unsettled = 140,      ///< not long enough at its goal
+  // The servo behind its messages
+  unpowered = 150,             ///< the manipulator's actuators are off
+  controller_restarted = 151,  ///< another session speaks for the manipulator
+  rival_servo = 152,           ///< another servo commands the same manipulator or laser
+  vessel_unknown = 153,        ///< the map has no vessel of this id
+  zone_invalid = 154,          ///< a zone that cannot be kept out of
+  scale_unknown = 155,         ///< no um per px, or more than one
   // Burning a plan
   plan_scale = 160,         ///< its um per px differs from the retina's
   plan_done = 161,          ///< no target is left that may be burnt
@@ -110,9 +117,8 @@ enum class Reason : std::int16_t {
   pulse_cut = 164,          ///< it ended early
   pose_not_new = 165,       ///< a pulse begins right after a pose alone
   burns_full = 166,         ///< no room left to remember what was burnt
-  dwelling = 167,           ///< the dwell at the target is not over
-  // Calibration
-  calibrating = 168,  ///< tips are being gathered
+  approaching = 167,        ///< the way to the target, or the dwell at it, is not over
+  beam_misses = 168,        ///< the beam does not meet the retina, or tip and shaft are not known
   // Devices: why a command moves nothing or emits nothing
   no_command = 170,      ///< none has come yet
   other_mode = 171,      ///< the command asks for the null, or for the controller's own tremor filter

@@ -32,4 +32,12 @@ struct ToolTip {
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of the tip, px^2
 };
 
+/// The aiming beam's spot on the retina, full-resolution px of the image.
+struct AimingSpot {
+  bool present = false;
+  double x_px = 0.0;
+  double y_px = 0.0;
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< px^2
+};
+
 }  // namespace eyeslam::tracking

@@ -13,12 +13,13 @@ ALLOWED = {
     "fixtures": {"retina"},
     "messaging": {"retina"},
     "baselines": {"retina", "tracking"},
+    "vision": {"retina", "tracking", "messaging"},
     "files": {"retina", "configuration", "tracking", "fixtures"},
     "servo": {"retina", "fixtures", "messaging"},
     "simulation": {"retina", "messaging"},
     "trials": None,
 }
-LCM_USERS = {"messaging", "servo", "simulation", "trials"}  # of the generated types
+LCM_USERS = {"messaging", "vision", "servo", "simulation", "trials"}  # of the generated types
 INCLUDE = re.compile(r'^\s*#include\s*["<]([^">]+)[">]', re.M)
 STREAMS = re.compile(r"<iostream>|\bstd::(?:cout|cerr|clog)\b|\b(?:std::)?f?printf\s*\(\s*(?:std|\")|\bfmt::print\b|\bspdlog::")
 CLOCKS = re.compile(r"_clock::now|\bclock_gettime\b|\bgettimeofday\b|\bgetTickCount\b|\bstd::time\b|\brandom_device\b")
