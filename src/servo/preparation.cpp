@@ -82,8 +82,8 @@ void PreparationDesk::take(const burn_plan_t& plan)
     return;
   }
   if (proposed_.plan && proposed_.hash == hash) return;  // said again, as once a second
-  proposed_ = {std::make_shared<const fixtures::BurnPlan>(planOf(plan)), hash, plan.map_id, {}};
-  for (const burn_target_t& target : plan.target) proposed_.states.push_back(target.state);
+  proposed_ = {std::make_shared<const fixtures::BurnPlan>(planOf(plan)), hash, plan.map_id,
+               std::make_shared<const burn_plan_t>(plan)};
   plan_came_ = true;
 }
 

@@ -54,7 +54,7 @@ struct ProposedPlan {
   std::shared_ptr<const fixtures::BurnPlan> plan;  ///< null before any; shared by all preparations with it
   messaging::Hash hash{};                          ///< of its contents, as this program calculates it
   std::int64_t map_id = 0;                         ///< of the map that it was made on
-  std::vector<std::int16_t> states;                ///< of each target as proposed, burn_target_t's numbers
+  std::shared_ptr<const burn_plan_t> message;      ///< the same as it came, with the states of its targets
 };
 
 /// All that takes longer than a cycle, made outside the loop and never changed afterwards. Shared by who made it and
