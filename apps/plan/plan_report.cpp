@@ -37,7 +37,7 @@ std::string rest(const fixtures::BurnOrderOptions& order, const fixtures::PlanTr
 
 std::string warningsOf(const fixtures::BurnPlan& plan)
 {
-  const fixtures::KeepOutOptions& zones = plan.prescription.keep_out;
+  const fixtures::BurnKeepOutOptions& zones = plan.prescription.keep_out;
   const fixtures::PlanSummary summary = fixtures::summarise(plan);
   std::string text;
   if (zones.fovea_px.empty()) text += "warning: fovea unknown: nothing is kept free around it; give --fovea X,Y\n";

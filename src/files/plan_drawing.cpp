@@ -138,13 +138,13 @@ void PlanDrawing::landmark(const std::string& field, const std::string& text, do
 
 bool PlanDrawing::hasZones() const
 {
-  const fixtures::KeepOutOptions& zones = plan_.prescription.keep_out;
+  const fixtures::BurnKeepOutOptions& zones = plan_.prescription.keep_out;
   return !(zones.fovea_px + zones.disc_px + zones.circles_px + zones.polygons_px).empty();
 }
 
 void PlanDrawing::zones()
 {
-  const fixtures::KeepOutOptions& zones = plan_.prescription.keep_out;
+  const fixtures::BurnKeepOutOptions& zones = plan_.prescription.keep_out;
   landmark("keep_out.fovea_px", zones.fovea_px, zones.fovea_um, "fovea");
   landmark("keep_out.disc_px", zones.disc_px, zones.disc_diameter_um / 2.0 + zones.disc_um, "disc");
   const std::vector<double> circles = fixtures::numbersIn("keep_out.circles_px", zones.circles_px);
