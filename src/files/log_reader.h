@@ -57,7 +57,7 @@ class LogReader {
   bool fill(std::size_t wanted);
   std::optional<Header> headerAt(std::size_t at) const;
   bool isFollowed(std::size_t end);
-  bool holds(std::int64_t number, std::size_t bytes) const;
+  bool holdsTheNext(const Header& header) const;
   bool isCutOff(const Header& header) const;
   std::optional<Header> whole();
   void skip();
