@@ -116,6 +116,7 @@ constexpr std::array kWords{
     Word{Reason::burns_full, "burns_full"},
     Word{Reason::approaching, "approaching"},
     Word{Reason::beam_misses, "beam_misses"},
+    Word{Reason::no_tip, "no_tip"},
     Word{Reason::no_command, "no_command"},
     Word{Reason::other_mode, "other_mode"},
     Word{Reason::not_powered, "not_powered"},

@@ -119,6 +119,7 @@ enum class Reason : std::int16_t {
   burns_full = 166,         ///< no room left to remember what was burnt
   approaching = 167,        ///< the way to the target, or the dwell at it, is not over
   beam_misses = 168,        ///< the beam does not meet the retina, or tip and shaft are not known
+  no_tip = 169,             ///< none was seen in the frame
   // Devices: why a command moves nothing or emits nothing
   no_command = 170,      ///< none has come yet
   other_mode = 171,      ///< the command asks for the null, or for the controller's own tremor filter

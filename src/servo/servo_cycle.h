@@ -100,6 +100,12 @@ class ServoCycle {
   /// Delay of the plant + 2 z / w, as the controller says (contracts, section 4); s.
   void setLead(double lead_s) noexcept;
 
+  /// The newest measured tip where the camera should see it; view frame, m. Zero before any.
+  Eigen::Vector2d tipInView() const noexcept
+  {
+    return state_ ? Eigen::Vector2d(toView(state_->tip).head<2>()) : Eigen::Vector2d::Zero();
+  }
+
   const Refusals& refusals() const noexcept { return refusals_; }
   const RetinaPredictor& retina() const noexcept { return retina_; }
   const NullPredictor& hand() const noexcept { return hand_; }

@@ -26,7 +26,7 @@ Reason first(std::initializer_list<Reason> reasons)
 
 // What is wrong, whoever asks; and what is needed to move, to guide, to burn.
 Reason wrong(const Health& h) { return first({h.cycle, h.clock, h.controller, h.rival}); }
-Reason cannotMove(const Health& h) { return first({wrong(h), h.state_link, h.operator_link}); }
+Reason cannotMove(const Health& h) { return first({wrong(h), h.state_link, h.operator_link, h.messages}); }
 Reason cannotGuide(const Health& h) { return first({cannotMove(h), h.registration, h.retina, h.fixture}); }
 Reason cannotBurn(const Health& h) { return first({cannotMove(h), h.registration, h.retina, h.plan}); }
 

@@ -50,7 +50,8 @@ const std::vector<Trouble> kWrong{{&Health::cycle, Reason::internal_error},
                                   {&Health::controller, Reason::state_not_finite},
                                   {&Health::rival, Reason::wrong_session}};
 const std::vector<Trouble> kLinks{{&Health::state_link, Reason::state_stale},
-                                  {&Health::operator_link, Reason::operator_stale}};
+                                  {&Health::operator_link, Reason::operator_stale},
+                                  {&Health::messages, Reason::replayed}};
 const std::vector<Trouble> kSight{{&Health::registration, Reason::registration_drift},
                                   {&Health::retina, Reason::pose_stale}};
 

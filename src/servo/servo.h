@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "eyeslam/messaging/link.h"
+#include "eyeslam/messaging/servo_messages.h"
+#include "eyeslam/servo/calibration.h"
+#include "eyeslam/servo/guidance.h"
+#include "eyeslam/servo/hand_over.h"
+#include "eyeslam/servo/health_monitor.h"
+#include "eyeslam/servo/operator_watch.h"
+#include "eyeslam/servo/pivot_estimator.h"
+#include "eyeslam/servo/preparation.h"
+#include "eyeslam/servo/servo_cycle.h"
+#include "eyeslam/servo/servo_ears.h"
+#include "eyeslam/servo/servo_options.h"
+#include "eyeslam/servo/status_report.h"
+#include "eyeslam/servo/supervisor.h"
+#include "eyeslam/servo/view_placement.h"
+
+namespace eyeslam::servo {
+
+/// The 1 kHz servo behind its messages: everything that is decided between what is heard and what is sent, the same in
+/// a real-time program and in lock step. It hears MICRON_STATE, LASER_STATE, OPERATOR, RETINA_POSE, TOOL_TIP, and who
+/// else speaks on its own channels; it sends MICRON_COMMAND, LASER_COMMAND, SERVO_STATUS and REGISTRATION.
+///
+///   Servo servo(options, link);
+///   each millisecond: link.drain(now);
+///                     if (prepared) done_with = servo.adopt(prepared);
+///                     servo.cycle(now, timing);
+///
+/// Within a cycle nothing throws, allocates (but what LCM itself does to send) or blocks. Source: loop study, 2;
+/// contracts, 4.
+class Servo {
+ public:
+  /// @param link  must outlive it; whoever owns it drains it
+  Servo(const ServoOptions& options, messaging::Link& link);
+  // The subscriptions hold its address.
+  Servo(const Servo&) = delete;
+  Servo& operator=(const Servo&) = delete;
+
+  /// One cycle, after the link was drained with the same time.
+  void cycle(const messaging::ReceiveTime& now, const CycleTiming& timing) noexcept;
+
+  /// What was prepared outside the loop takes the place of what was. @return that, to be freed outside the loop
+  std::shared_ptr<const Preparation> adopt(std::shared_ptr<const Preparation> preparation) noexcept;
+  /// The camera and the retina's plane, by a calibration or from a file. @param utime  us since 1970, when estimated
+  void adopt(const CalibrationResult& calibration, std::int64_t utime) noexcept;
+
+  const messaging::ServoStatus& status() const noexcept { return report_.status(); }
+  /// What was sent to the manipulator in the last cycle; none when nothing was.
+  const std::optional<messaging::MicronCommand>& motion() const noexcept { return motion_; }
+  const ServoCycle& loop() const noexcept { return cycle_; }
+  const ServoEars& ears() const noexcept { return ears_; }
+
+ private:
+  void run(const CycleTiming& timing);
+  void fail() noexcept;
+  void rearm() noexcept;
+
+  CycleInput input() noexcept;
+  void takeState(CycleInput& input) noexcept;
+  void takePose(CycleInput& input) noexcept;
+  void takeTip(CycleInput& input) noexcept;
+  bool jumpedTooFar(const SeenPose& pose) const noexcept;
+  void placeView() noexcept;
+
+  LoopSigns signs(const Outlook& outlook) noexcept;
+  void supervise(const Outlook& outlook);
+  const ServoCommand& guide(const Outlook& outlook) noexcept;
+  bool hasState(const Outlook& outlook) const noexcept;
+  std::optional<messaging::MicronMode> modeOf(const Outlook& outlook) const noexcept;
+  void move(const Outlook& outlook);
+  void publishMotion(messaging::MicronMode mode, const ServoCommand* command);
+  void publishStatus(const CycleTiming& timing);
+
+  ServoOptions options_;
+  ServoEars ears_;
+  messaging::Publisher<micron_command_t> motions_;
+  messaging::Publisher<servo_status_t> statuses_;
+
+  OperatorWatch operator_;
+  HealthMonitor monitor_;
+  Supervisor supervisor_;
+  HandOver hand_over_;
+  ServoCycle cycle_;
+  Guidance guidance_;
+  PivotEstimator pivot_;
+  StatusReport report_;
+
+  std::shared_ptr<const Preparation> preparation_;  // shared with who made it and will free it
+  Registration registration_;
+  std::optional<RetinaPlane> plane_;
+  ViewScale scale_;  // that the view's metres are made of; 0 = nothing is placed yet
+
+  messaging::ReceiveTime now_;
+  Wish wish_;
+  Health health_;
+  retina::Reason trouble_ = retina::Reason::none;  // of the loop itself, in the last cycle
+  retina::Reason fixture_reason_ = retina::Reason::none;
+  bool pose_jumped_ = false;  // in this cycle
+  bool pose_came_ = false;    // a new one is in use in this cycle
+  std::int64_t states_taken_ = 0, poses_taken_ = 0, tips_taken_ = 0;
+  std::int64_t map_id_ = 0;
+  std::int64_t utime_image_ = 0;  // of the newest pose in use, by its sender's clock
+  std::int64_t last_moving_ = 0;  // monotonic, us: of the last cycle in a state that commands
+  std::optional<messaging::MicronCommand> motion_;
+};
+
+}  // namespace eyeslam::servo
