@@ -79,7 +79,7 @@ void check(const TrackArguments& arguments)
 {
   const auto methods = baselines::methodNames();
   if (arguments.input.empty())
-    throw UsageError("INPUT is missing; a video file, image folder, glob or camera:N is wanted");
+    throw UsageError("INPUT is missing; a video file, image folder, glob, camera:N or shm:NAME is wanted");
   if (arguments.out.empty()) throw UsageError("--out DIR is missing; name a folder for the results");
   if (std::find(methods.begin(), methods.end(), arguments.method) == methods.end()) {
     throw UsageError(fmt::format("--method {}: there is none; one of {}", arguments.method, fmt::join(methods, ", ")));

@@ -17,6 +17,7 @@ class CameraSource : public VideoSource {
   void skipTo(std::int64_t first) override;
   std::optional<std::int64_t> announcedFrames() const override { return std::nullopt; }
   double framesPerSecond() const override;
+  bool isLive() const override { return true; }
 
  private:
   VideoSourceOptions options_;

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "eyeslam/files/camera_source.h"
+#include "eyeslam/files/frame_ring_source.h"
 #include "eyeslam/files/image_folder_source.h"
 #include "eyeslam/files/image_names.h"
 #include "eyeslam/files/video_file_source.h"
@@ -35,7 +36,7 @@ void checkFile(const std::string& input)
 {
   std::error_code error;
   if (!fs::exists(input, error))
-    throw FileError(input + ": does not exist; a video file, image folder, glob or camera:N is wanted");
+    throw FileError(input + ": does not exist; a video file, image folder, glob, camera:N or shm:NAME is wanted");
   if (!fs::is_regular_file(input, error)) throw FileError(input + ": is neither a file nor a folder");
   if (fs::file_size(input, error) == 0) throw FileError(input + ": is empty");
 }
@@ -46,11 +47,7 @@ std::unique_ptr<VideoSource> openVideoSource(const std::string& input, const Vid
 {
   std::error_code error;
   if (hasPrefix(input, "camera:")) return std::make_unique<CameraSource>(cameraNumber(input), options);
-  if (hasPrefix(input, "shm:")) {
-    throw FileError(input +
-                    ": frames in shared memory cannot be read by this version; a video file, image folder, glob or "
-                    "camera:N is wanted");
-  }
+  if (hasPrefix(input, "shm:")) return std::make_unique<FrameRingSource>(input, options);
   if (fs::is_directory(input, error) || isGlob(input)) {
     return std::make_unique<ImageFolderSource>(imagesOf(input), options);
   }

@@ -39,6 +39,10 @@ class VideoSource {
   virtual std::optional<std::int64_t> announcedFrames() const = 0;
   /// Nominal frames per second, for the overlay.
   virtual double framesPerSecond() const = 0;
+  /// Whether frames come by themselves, so that one that repeats the last is a fault, and one that is late is lost.
+  virtual bool isLive() const { return false; }
+  /// Frames that came and went because the next one was there when they were asked for.
+  virtual std::int64_t framesLeftOut() const { return 0; }
   /// The files behind the source, for their hash; none for a camera.
   virtual std::vector<std::string> paths() const { return {}; }
   /// What was converted or looks doubtful, one line each; grows while reading.
@@ -52,11 +56,13 @@ struct VideoSourceOptions {
   double frames_per_second = 30.0;  ///< of images, which carry no time
   std::int64_t last_frame = -1;  ///< number of the last frame that will be asked for, -1 = all: damage after it is none
   std::function<double()> now;   ///< monotonic clock, s: the time of a camera's frames
+  double patience = 5.0;         ///< s: how long a ring of frames, and each of its frames, is waited for
+  std::function<bool()> stopped;  ///< asked while waiting for a ring's frame; true ends the source
   /// Called with how many images of a folder are checked, and how many there are; false ends the opening.
   std::function<bool(std::int64_t checked, std::int64_t all)> checking;
 };
 
-/// Opens a video file, an image folder, a glob of images, or `camera:N`.
+/// Opens a video file, an image folder, a glob of images, `camera:N`, or `shm:NAME`.
 /// @throws FileError naming the input: missing, empty, no video, no images, images damaged or of differing size or
 /// type,
 ///                   or ended by `checking`
