@@ -123,6 +123,7 @@ constexpr std::array kWords{
     Word{Reason::pulse_too_long, "pulse_too_long"},
     Word{Reason::power_too_high, "power_too_high"},
     Word{Reason::command_lapsed, "command_lapsed"},
+    Word{Reason::servo_singular, "servo_singular"},
 };
 
 }  // namespace

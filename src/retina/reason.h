@@ -127,6 +127,8 @@ enum class Reason : std::int16_t {
   pulse_too_long = 173,  ///< for this laser
   power_too_high = 174,  ///< for this laser
   command_lapsed = 175,  ///< a pulse was no longer held, so it ended early
+  // Visual servoing
+  servo_singular = 185,  ///< the features do not fix the motion of the tip
 };
 
 /// The word of a reason, as in `trajectory.csv`; empty for `none`.

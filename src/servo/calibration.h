@@ -36,18 +36,21 @@ struct CalibrationPatternOptions {
 
 /// A short safe sweep of the tip about the hand's null, as a function of the time since its start: a rosette across the
 /// shaft and, slower, back along it, never towards the retina. Starts and ends at zero, at rest; outside [0, duration]
-/// it is zero. With the defaults 3.6 mm/s and 30 mm/s^2 at most; 5 mm/s for any options (tests). Pure.
+/// it is zero. 5 mm/s and 50 mm/s^2 at most for any options (tests). Never throws, never allocates.
 class CalibrationPattern {
  public:
   explicit CalibrationPattern(const CalibrationPatternOptions& options = {});
 
   double duration_s() const noexcept { return duration_; }
-  /// @param shaft  unit, from the handle towards the tip, manipulator frame
-  /// @return deflection from the null, manipulator frame, m; zero for what is not finite
+  /// Fixes the sweep's first direction across the shaft. @param shaft  unit, from the handle towards the tip
+  void start(const Eigen::Vector3d& shaft) noexcept;
+  /// @param shaft  as it is now: the sweep turns with it
+  /// @return deflection from the null, manipulator frame, m; zero before a start and for what is not finite
   Eigen::Vector3d at(double time_s, const Eigen::Vector3d& shaft) const noexcept;
 
  private:
   double lateral_, backwards_, duration_, ramp_;
+  Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
 };
 
 /// One frame of a calibration.

@@ -123,6 +123,10 @@ Reason CameraRegistration::add(const TipSample& sample)
       return refuse(Reason::outlier);
     }
   }
+  if (result_.good() && bringsNothing(sample.tip)) {
+    result_.reason = verdict();
+    return refuse(Reason::tip_at_rest);
+  }
   information_ *= options_.forgetting;
   moments_ *= options_.forgetting;
   squares_ *= options_.forgetting;
@@ -134,11 +138,55 @@ Reason CameraRegistration::add(const TipSample& sample)
   return Reason::none;
 }
 
+bool CameraRegistration::bringsNothing(const Eigen::Vector3d& tip) const
+{
+  const double from_mean = ((tip - origin_) * kPerMillimetre - mean_).norm();
+  return spread_ < 1e-3 * options_.least_spread_um && from_mean < spread_;
+}
+
+Reason CameraRegistration::resume(const Registration& known)
+{
+  forget();
+  const Eigen::Matrix4d covariance = known.row_covariance;
+  const Eigen::LDLT<Eigen::Matrix3d> lateral(covariance.topLeftCorner<3, 3>());
+  // Where the projection is surest: the middle of the tips it was estimated from.
+  const Eigen::Vector3d middle = -lateral.solve(covariance.topRightCorner<3, 1>());
+  if (!known.image_T_base.allFinite() || known.samples <= 0 || !(known.residual_px >= 0.0) || !middle.allFinite())
+    return result_.reason = Reason::out_of_range;
+  origin_ = last_tip_ = middle;
+  const Eigen::Matrix4d own = toOwn();
+  const Eigen::Matrix4d inverse = own.inverse();
+  information_ = (inverse * covariance * inverse.transpose()).inverse();
+  information_ = (0.5 * (information_ + information_.transpose())).eval();
+  const Eigen::Matrix<double, 4, 2> rows = (known.image_T_base * inverse).transpose();
+  moments_ = information_ * rows;
+  weights_ = information_(3, 3);
+  result_.samples = known.samples;
+  const double freedoms = std::max(1.0, 2.0 * known.samples - 8.0);
+  squares_ = rows.cwiseProduct(moments_).sum() +
+             known.residual_px * known.residual_px * freedoms * weights_ / static_cast<double>(known.samples);
+  if (!information_.allFinite() || !(weights_ > 0.0)) {
+    forget();
+    return result_.reason = Reason::out_of_range;
+  }
+  solve();
+  return result_.reason = verdict();
+}
+
 void CameraRegistration::expectScale(double um_per_px, const RetinaPlane& plane)
 {
   expected_um_per_px_ = um_per_px;
   expected_plane_ = plane;
   result_.reason = verdict();
+}
+
+// From metres about the manipulator's origin to mm about ours.
+Eigen::Matrix4d CameraRegistration::toOwn() const
+{
+  Eigen::Matrix4d own = Eigen::Matrix4d::Identity();
+  own.topLeftCorner<3, 3>() *= kPerMillimetre;
+  own.topRightCorner<3, 1>() = -kPerMillimetre * origin_;
+  return own;
 }
 
 void CameraRegistration::absorb(const TipSample& sample, double weight)
@@ -166,9 +214,7 @@ void CameraRegistration::solve()
   result_.residual_px = std::sqrt(squares / freedoms * of_samples);
   const double noise = std::max(1.0, squares / freedoms);
   // From mm about the origin back to metres about the manipulator's own.
-  Eigen::Matrix4d own = Eigen::Matrix4d::Identity();
-  own.topLeftCorner<3, 3>() *= kPerMillimetre;
-  own.topRightCorner<3, 1>() = -kPerMillimetre * origin_;
+  const Eigen::Matrix4d own = toOwn();
   result_.image_T_base = rows.transpose() * own;
   result_.row_covariance = noise * own.transpose() * inverse * own;
 
@@ -177,6 +223,8 @@ void CameraRegistration::solve()
       information_.topLeftCorner<3, 3>() / std::max(weights_, 1e-300) - mean * mean.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(scatter);
   // The two larger ones: depth may be nearly constant over a flat retina, and the affine camera hardly feels it.
+  mean_ = mean;
+  spread_ = std::sqrt(std::max(0.0, spread.eigenvalues()[1]));
   result_.condition = std::sqrt(spread.eigenvalues()[2] / std::max(spread.eigenvalues()[1], 1e-12));
 }
 

@@ -14,6 +14,7 @@ namespace eyeslam::servo {
 struct CameraRegistrationOptions {
   double forgetting = 0.995;
   double least_step_um = 20.0;
+  double least_spread_um = 300.0;
   double outlier_sigmas = 4.0;
   double least_samples = 20.0;
   double worst_residual_px = 4.0;
@@ -30,6 +31,9 @@ struct CameraRegistrationOptions {
                   "offset drifts within 10 s");
     visitor.field("least_step_um", self.least_step_um, Range{0.0, 1000.0}, "um",
                   "a tip that moved less brings nothing new and would only make the filter forget; source: facts E2");
+    visitor.field("least_spread_um", self.least_spread_um, Range{0.0, 5000.0}, "um",
+                  "below it (standard deviation across the narrower way) what is known of the camera is not forgotten "
+                  "for tips in the middle of it; source: facts E2, without excitation the covariance blows up");
     visitor.field("outlier_sigmas", self.outlier_sigmas, Range{2.0, 20.0}, "sigma",
                   "a sample further from the fit is refused; source: loop study 2.4");
     visitor.field("least_samples", self.least_samples, Range{8.0, 1e4}, "",
@@ -94,6 +98,8 @@ class CameraRegistration {
 
   /// Starts anew from many samples, robustly: a wrong tip detection in ten does no harm. Allocates; not for the loop.
   retina::Reason fit(const std::vector<TipSample>& samples);
+  /// Goes on from what was estimated before, as if its samples had just been taken. A result that cannot be is refused.
+  retina::Reason resume(const Registration& known);
   /// Takes one more sample; never throws, never allocates. @return why it was not taken, none when it was
   retina::Reason add(const TipSample& sample);
   /// What somebody else believes, such as a plan: a scale that differs makes the registration bad.
@@ -105,11 +111,13 @@ class CameraRegistration {
  private:
   using Row = Eigen::Vector4d;
 
+  Eigen::Matrix4d toOwn() const;
   Row regressor(const Eigen::Vector3d& tip) const;
   void absorb(const TipSample& sample, double weight);
   void solve();
   retina::Reason verdict() const;
   void forget();
+  bool bringsNothing(const Eigen::Vector3d& tip) const;
 
   CameraRegistrationOptions options_;
   // Normal equations of both rows, in mm about the first tip: metres would make the matrix ill conditioned.
@@ -118,6 +126,8 @@ class CameraRegistration {
   Eigen::Matrix<double, 4, 2> moments_ = Eigen::Matrix<double, 4, 2>::Zero();
   double squares_ = 0.0;  // weighted squares of residuals, for the noise as it really is
   double weights_ = 0.0;
+  Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();  // of the tips, mm about the origin
+  double spread_ = 0.0;                             // mm, their standard deviation across the narrower way
   Eigen::Vector3d last_tip_ = Eigen::Vector3d::Zero();
   Eigen::Vector2d drift_ = Eigen::Vector2d::Zero();  // mean of the newest innovations, sigmas
   std::optional<double> expected_um_per_px_;

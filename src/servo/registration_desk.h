@@ -87,16 +87,15 @@ class RegistrationDesk {
   std::int64_t adoptions() const noexcept { return adoptions_; }
 
  private:
-  struct Held {
-    Eigen::Matrix<double, 6, 1> tip_and_shaft;
-  };
+  using TipAndShaft = Eigen::Matrix<double, 6, 1>;
 
   std::optional<CalibrationSample> sampleOf(const messaging::InstrumentSight& sight) const noexcept;
+  double measuredSigmaPx() const noexcept;
 
   RegistrationDeskOptions options_;
   CameraRegistration camera_;
   std::optional<RetinaPlane> plane_;
-  TimedRing<Eigen::Matrix<double, 6, 1>, 512> measured_;  // tip and shaft
+  TimedRing<TipAndShaft, 512> measured_;
   std::int64_t seen_utime_ = 0;
   std::int64_t utime_ = 0;
   std::int64_t adoptions_ = 0;
