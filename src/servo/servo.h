@@ -7,19 +7,20 @@
 
 #include "eyeslam/messaging/link.h"
 #include "eyeslam/messaging/servo_messages.h"
+#include "eyeslam/servo/burn_run.h"
 #include "eyeslam/servo/calibration.h"
+#include "eyeslam/servo/calibration_run.h"
 #include "eyeslam/servo/guidance.h"
 #include "eyeslam/servo/hand_over.h"
 #include "eyeslam/servo/health_monitor.h"
 #include "eyeslam/servo/operator_watch.h"
-#include "eyeslam/servo/pivot_estimator.h"
 #include "eyeslam/servo/preparation.h"
 #include "eyeslam/servo/servo_cycle.h"
 #include "eyeslam/servo/servo_ears.h"
 #include "eyeslam/servo/servo_options.h"
+#include "eyeslam/servo/servo_senses.h"
 #include "eyeslam/servo/status_report.h"
 #include "eyeslam/servo/supervisor.h"
-#include "eyeslam/servo/view_placement.h"
 
 namespace eyeslam::servo {
 
@@ -49,10 +50,24 @@ class Servo {
   std::shared_ptr<const Preparation> adopt(std::shared_ptr<const Preparation> preparation) noexcept;
   /// The camera and the retina's plane, by a calibration or from a file. @param utime  us since 1970, when estimated
   void adopt(const CalibrationResult& calibration, std::int64_t utime) noexcept;
+  /// A sweep that is over and waits for `evaluate`, outside the loop; null when there is none.
+  const CalibrationSamples* samples() const noexcept;
+  /// Somebody has them.
+  void samplesTaken() noexcept { calibration_.taken(); }
+
+  /// From now on the human's wish counts as standby: the controller takes over, and then `motion()` is none.
+  void close() noexcept { closes_ = true; }
 
   const messaging::ServoStatus& status() const noexcept { return report_.status(); }
   /// What was sent to the manipulator in the last cycle; none when nothing was.
   const std::optional<messaging::MicronCommand>& motion() const noexcept { return motion_; }
+  /// What was burnt and may be: BURN_PLAN in force is `BurnLedger::describe`, which allocates, and so published by
+  /// whoever owns the loop, beside it, at 1 Hz and when `ledger().changes()` has grown.
+  const BurnLedger& ledger() const noexcept { return burning_.ledger(); }
+  /// Why no plan is in force; none when one is.
+  retina::Reason planReason() const noexcept { return burning_.planReason(); }
+  const BurnRun& burning() const noexcept { return burning_; }
+  const RegistrationDesk& registration() const noexcept { return senses_.desk(); }
   const ServoCycle& loop() const noexcept { return cycle_; }
   const ServoEars& ears() const noexcept { return ears_; }
 
@@ -61,52 +76,51 @@ class Servo {
   void fail() noexcept;
   void rearm() noexcept;
 
-  CycleInput input() noexcept;
-  void takeState(CycleInput& input) noexcept;
-  void takePose(CycleInput& input) noexcept;
-  void takeTip(CycleInput& input) noexcept;
-  bool jumpedTooFar(const SeenPose& pose) const noexcept;
-  void placeView() noexcept;
-
+  bool hasState(const Outlook& outlook) const noexcept;
+  bool wantsCalibration() const noexcept;
   LoopSigns signs(const Outlook& outlook) noexcept;
   void supervise(const Outlook& outlook);
+  bool isGuided() const noexcept;
+  void burn(const Outlook& outlook) noexcept;
   const ServoCommand& guide(const Outlook& outlook) noexcept;
-  bool hasState(const Outlook& outlook) const noexcept;
   std::optional<messaging::MicronMode> modeOf(const Outlook& outlook) const noexcept;
   void move(const Outlook& outlook);
-  void publishMotion(messaging::MicronMode mode, const ServoCommand* command);
+  void publishMotion(messaging::MicronMode mode, const Eigen::Vector3d& goal);
+  void publishLaser();
+  void publishRegistration();
   void publishStatus(const CycleTiming& timing);
 
   ServoOptions options_;
   ServoEars ears_;
   messaging::Publisher<micron_command_t> motions_;
+  messaging::Publisher<laser_command_t> lasers_;
   messaging::Publisher<servo_status_t> statuses_;
+  messaging::Publisher<registration_t> registrations_;
 
   OperatorWatch operator_;
   HealthMonitor monitor_;
   Supervisor supervisor_;
   HandOver hand_over_;
   ServoCycle cycle_;
+  ServoSenses senses_;
   Guidance guidance_;
-  PivotEstimator pivot_;
+  CalibrationRun calibration_;
+  BurnRun burning_;
   StatusReport report_;
-
   std::shared_ptr<const Preparation> preparation_;  // shared with who made it and will free it
-  Registration registration_;
-  std::optional<RetinaPlane> plane_;
-  ViewScale scale_;  // that the view's metres are made of; 0 = nothing is placed yet
 
   messaging::ReceiveTime now_;
   Wish wish_;
   Health health_;
+  bool closes_ = false;
   retina::Reason trouble_ = retina::Reason::none;  // of the loop itself, in the last cycle
   retina::Reason fixture_reason_ = retina::Reason::none;
-  bool pose_jumped_ = false;  // in this cycle
-  bool pose_came_ = false;    // a new one is in use in this cycle
-  std::int64_t states_taken_ = 0, poses_taken_ = 0, tips_taken_ = 0;
-  std::int64_t map_id_ = 0;
-  std::int64_t utime_image_ = 0;  // of the newest pose in use, by its sender's clock
-  std::int64_t last_moving_ = 0;  // monotonic, us: of the last cycle in a state that commands
+  std::int64_t last_moving_ = 0;    // monotonic, us: of the last cycle in a state that commands
+  std::int64_t last_lit_ = 0;       // the same with the laser on
+  std::int64_t registered_at_ = 0;  // the same of the last REGISTRATION
+  std::int64_t adoptions_ = 0;      // in it
+  retina::Reason registration_reason_ = retina::Reason::none;
+  BurnOutput burn_;
   std::optional<messaging::MicronCommand> motion_;
 };
 

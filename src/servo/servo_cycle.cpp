@@ -53,6 +53,18 @@ Eigen::Vector3d ServoCycle::toManipulator(const Eigen::Vector3d& view) const noe
   return placement_.manipulator_T_view * measured;
 }
 
+Eigen::Vector3d ServoCycle::onRetina(const Eigen::Vector3d& place, std::int64_t utime) const noexcept
+{
+  return ViewPose{placement_.centre, retina_.at(utime).view_T_retina}.toRetina(toView(place));
+}
+
+Eigen::Vector3d ServoCycle::directionOnRetina(const Eigen::Vector3d& direction, std::int64_t utime) const noexcept
+{
+  Eigen::Vector3d turned = view_T_manipulator_.linear() * direction;
+  turned.head<2>() = Eigen::Rotation2Dd(-retina_.at(utime).view_T_retina.theta) * turned.head<2>();
+  return turned.normalized();
+}
+
 Eigen::Vector3d ServoCycle::nullAt(std::int64_t utime) const noexcept
 {
   return options_.predicts_null ? hand_.at(utime) : state_->null;

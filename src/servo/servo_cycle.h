@@ -106,6 +106,10 @@ class ServoCycle {
     return state_ ? Eigen::Vector2d(toView(state_->tip).head<2>()) : Eigen::Vector2d::Zero();
   }
 
+  /// A place, or a direction, of the manipulator's frame as the retina lay at an instant; retina frame, m.
+  Eigen::Vector3d onRetina(const Eigen::Vector3d& place, std::int64_t utime) const noexcept;
+  Eigen::Vector3d directionOnRetina(const Eigen::Vector3d& direction, std::int64_t utime) const noexcept;
+
   const Refusals& refusals() const noexcept { return refusals_; }
   const RetinaPredictor& retina() const noexcept { return retina_; }
   const NullPredictor& hand() const noexcept { return hand_; }

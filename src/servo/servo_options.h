@@ -2,9 +2,12 @@
 #pragma once
 
 #include "eyeslam/retina/options.h"
+#include "eyeslam/servo/burn_run_options.h"
+#include "eyeslam/servo/calibration.h"
 #include "eyeslam/servo/guidance.h"
 #include "eyeslam/servo/health_monitor.h"
 #include "eyeslam/servo/pivot_estimator.h"
+#include "eyeslam/servo/registration_desk.h"
 #include "eyeslam/servo/servo_cycle_options.h"
 
 namespace eyeslam::servo {
@@ -21,6 +24,9 @@ struct ServoOptions {
   HealthMonitorOptions health;
   GuidanceOptions guidance;
   PivotEstimatorOptions pivot;
+  RegistrationDeskOptions registration;
+  CalibrationPatternOptions sweep;
+  BurnRunOptions burning;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor& visitor)
@@ -44,6 +50,9 @@ struct ServoOptions {
     visitor.group("health", self.health);
     visitor.group("guidance", self.guidance);
     visitor.group("pivot", self.pivot);
+    visitor.group("registration", self.registration);
+    visitor.group("sweep", self.sweep);
+    visitor.group("burning", self.burning);
   }
 };
 
