@@ -120,7 +120,9 @@ Fundus withContrast(const Fundus& fundus, double factor)
 {
   Fundus result = fundus;
   const cv::Mat mean = wideBlur(fundus.bgr, kMean_um / fundus.um_per_px);
-  result.bgr = mean + factor * (fundus.bgr - mean);
+  // A new picture: assigning the expression to the shared one would write into the caller's.
+  const cv::Mat contrasted = mean + factor * (fundus.bgr - mean);
+  result.bgr = contrasted;
   return result;
 }
 
