@@ -156,7 +156,7 @@ Reason CameraRegistration::resume(const Registration& known)
   origin_ = last_tip_ = middle;
   const Eigen::Matrix4d own = toOwn();
   const Eigen::Matrix4d inverse = own.inverse();
-  information_ = (inverse * covariance * inverse.transpose()).inverse();
+  information_ = (inverse.transpose() * covariance * inverse).inverse();
   information_ = (0.5 * (information_ + information_.transpose())).eval();
   const Eigen::Matrix<double, 4, 2> rows = (known.image_T_base * inverse).transpose();
   moments_ = information_ * rows;
