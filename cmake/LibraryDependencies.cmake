@@ -6,7 +6,7 @@ find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs videoio highg
 # In a function, because ViSP's package writes -fopenmp and a language standard into its caller's variables, and Eigen
 # would then open threads in code that never asked for them. The imported targets stay.
 function(eyeslam_find_visp)
-  find_package(VISP 3.5 REQUIRED visp_core visp_io visp_gui)
+  find_package(VISP 3.5 REQUIRED visp_core visp_io visp_gui visp_robot visp_visual_features visp_vs)
 endfunction()
 eyeslam_find_visp()
 

@@ -7,5 +7,5 @@ configure_package_config_file(cmake/eyeslamConfig.cmake.in ${PROJECT_BINARY_DIR}
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/eyeslamConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/eyeslamConfig.cmake ${PROJECT_BINARY_DIR}/eyeslamConfigVersion.cmake
   cmake/LibraryDependencies.cmake DESTINATION ${package_dir})
-install(TARGETS eyeslam_opencv eyeslam_visp EXPORT eyeslamTargets)
+install(TARGETS eyeslam_opencv eyeslam_visp eyeslam_visp_servo EXPORT eyeslamTargets)
 install(EXPORT eyeslamTargets NAMESPACE EyeSLAM:: DESTINATION ${package_dir})
