@@ -110,6 +110,8 @@ class ServoCycle {
   Eigen::Vector3d onRetina(const Eigen::Vector3d& place, std::int64_t utime) const noexcept;
   Eigen::Vector3d directionOnRetina(const Eigen::Vector3d& direction, std::int64_t utime) const noexcept;
 
+  /// What the last cycle asked for.
+  const ServoCommand& last() const noexcept { return command_; }
   const Refusals& refusals() const noexcept { return refusals_; }
   const RetinaPredictor& retina() const noexcept { return retina_; }
   const NullPredictor& hand() const noexcept { return hand_; }

@@ -84,10 +84,10 @@ void ServoSenses::takeState() noexcept
 
 void ServoSenses::takePose() noexcept
 {
-  if (ears_.poses.accepted() == poses_ || !(scale_.um_per_px > 0.0)) return;
+  if (ears_.poses.accepted() == poses_) return;
   poses_ = ears_.poses.accepted();
   const messaging::RetinaPose& pose = *ears_.poses.latest();
-  if (!pose.motion.tracked) return;
+  if (!pose.motion.tracked || !(scale_.um_per_px > 0.0)) return;
   if (pose.map.id != map_id_) cycle_.forgetRetina();
   map_id_ = pose.map.id;
   const Eigen::Matrix3d& covariance = pose.motion.covariance;
@@ -106,7 +106,7 @@ void ServoSenses::takePose() noexcept
 // there is none.
 bool ServoSenses::jumpedTooFar(const SeenPose& pose) const noexcept
 {
-  if (retina() != Reason::none) return false;
+  if (retina() != Reason::none || !cycle_.retina().isReady()) return false;
   const retina::Pose2 expected = cycle_.retina().at(pose.utime).view_T_retina;
   const Eigen::Vector2d tip = cycle_.tipInView() - metresPerPx() * scale_.centre_px;
   for (const Eigen::Vector2d& place : {Eigen::Vector2d(0.0, 0.0), tip}) {
@@ -132,9 +132,9 @@ void ServoSenses::takeTip() noexcept
 Reason ServoSenses::retina() const noexcept
 {
   if (pose_jumped_) return Reason::pose_jumped;
-  const RetinaPredictor& retina = cycle_.retina();
-  if (!retina.isReady()) return Reason::no_pose;
-  const bool old = seconds(input_.now - retina.utime()) > options_.cycle.pose_limit_ms * kMilli;
+  if (pose_.utime == 0) return Reason::no_pose;
+  // A view that has just been placed anew waits for its first pose no longer than for any other.
+  const bool old = seconds(input_.now - pose_.utime) > options_.cycle.pose_limit_ms * kMilli;
   return old ? Reason::pose_stale : Reason::none;
 }
 
@@ -159,7 +159,7 @@ void ServoSenses::describe(const Outlook& outlook, BurnInput& input) const noexc
   input.map_id = map_id_;
   input.registered = desk_.good();
   input.um_per_px = desk_.umPerPx();
-  input.tracked = pose && pose->motion.tracked && this->retina() == Reason::none;
+  input.tracked = pose && pose->motion.tracked && retina.isReady() && this->retina() == Reason::none;
   if (!input.tracked) return;
   input.pose_utime = retina.utime();
   input.pose_age = seconds(input_.now - retina.utime());

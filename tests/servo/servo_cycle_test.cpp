@@ -124,6 +124,59 @@ TEST(ServoCycle, AGoalThatIsNoneGivesWayToTheHandAndIsCounted)
   EXPECT_GE(cycle.refusals().of(Reason::goal_not_finite), 300);
 }
 
+TEST(ServoCycle, ARefinedPlacementMovesNothing)
+{
+  ServoCycle cycle({}, {});
+  const Eigen::Vector3d wanted(300e-6, -200e-6, 0.0);
+  runQuiet(cycle, 0, 1000, wanted);
+  const Eigen::Vector3d before = cycle.last().goal;
+  ViewPlacement refined;
+  refined.manipulator_T_view.linear() *= 1.01;
+  refined.manipulator_T_view.translation() = Eigen::Vector3d(40e-6, -30e-6, 0.0);
+  cycle.setPlacement(refined);
+  for (int i = 1000; i < 1010; ++i) {
+    cycle.observe(quiet(i));
+    ASSERT_LT((cycle.command(wanted).goal - before).head<2>().norm(), 1e-9) << i;
+  }
+  // And the trim goes on from there: tips are still seen where they were.
+  runQuiet(cycle, 1010, 2000, wanted);
+  EXPECT_LT((cycle.last().goal - before).head<2>().norm(), 1e-6);
+  EXPECT_EQ(cycle.refusals().of(Reason::tip_far), 0);
+}
+
+TEST(ServoCycle, AnotherPlacementIsGoneToWithoutAStep)
+{
+  ServoCycle cycle({}, {});
+  const Eigen::Vector3d wanted(300e-6, 0.0, 0.0);
+  runQuiet(cycle, 0, 1000, wanted);
+  Eigen::Vector3d last = cycle.last().goal, velocity = Eigen::Vector3d::Zero();
+  ViewPlacement other;
+  other.manipulator_T_view.translation() = Eigen::Vector3d(600e-6, 0.0, 0.0);
+  cycle.setPlacement(other);
+  for (int i = 1000; i < 1500; ++i) {
+    cycle.observe(quiet(i));
+    const Eigen::Vector3d now = (cycle.command(wanted).goal - last) / 1e-3;
+    ASSERT_LE(now.norm(), 20e-3 * (1.0 + 1e-9));
+    ASSERT_LE((now - velocity).norm(), 8e-3 * (1.0 + 1e-6));
+    last = cycle.last().goal;
+    velocity = now;
+  }
+  EXPECT_GT(last.x(), 850e-6);
+}
+
+TEST(ServoCycle, AfterARestItBeginsWhereTheTipIs)
+{
+  ServoCycle cycle({}, {});
+  runQuiet(cycle, 0, 500, {300e-6, 0.0, 0.0});
+  cycle.rest();
+  CycleInput input = quiet(500);
+  input.state->tip = Eigen::Vector3d(-100e-6, 50e-6, 0.0);
+  cycle.observe(input);
+  const ServoCommand& command = cycle.command({300e-6, 0.0, 0.0});
+  EXPECT_LT((command.goal - input.state->tip).norm(), 10e-6);
+  EXPECT_LT((command.deflection - input.state->tip).norm(), 40e-6);
+}
+
 // Anything may come in: out of order, NaN, from the future, far away. What goes out stays finite and within the limits.
 TEST(ServoCycle, WhateverComesInTheCommandIsFiniteAndItsGoalSlow)
 {
