@@ -6,6 +6,7 @@
 
 #include "bench/centerline_study.h"
 #include "bench/detector_study.h"
+#include "bench/live_study.h"
 #include "bench/loop_tables.h"
 #include "bench/method_study.h"
 #include "bench/plan_tables.h"
@@ -24,7 +25,8 @@ const std::string kExamples =
     "eyeslam-bench centerlines photographs/*_vessels.png\n"
     "eyeslam-bench centerlines sequences/human --tracks out\n"
     "eyeslam-bench plan sequences/* --tracks out --photographs photographs\n"
-    "eyeslam-bench loop --seeds 5";
+    "eyeslam-bench loop --seeds 5\n"
+    "eyeslam-bench live --seconds 600";
 
 struct BenchArguments {
   std::vector<std::string> sequences;
@@ -155,8 +157,18 @@ CLI::App* addLoopCommand(CLI::App& app, LoopInputs& inputs)
   return command;
 }
 
+CLI::App* addLiveCommand(CLI::App& app, LiveInputs& inputs)
+{
+  CLI::App* command = app.add_subcommand("live", "eyeslam-servo as a process over UDP, beside a bare timer loop");
+  command->add_option("--seconds", inputs.seconds, "that count")->check(CLI::Range(1.0, 1800.0));
+  command->add_option("--programs", inputs.programs, "folder of eyeslam-servo and eyeslam-track; default: beside this")
+      ->check(CLI::ExistingDirectory);
+  command->add_flag("--quiet", inputs.quiet, "no progress on standard error");
+  return command;
+}
+
 std::function<void()> setUp(CLI::App& app, BenchArguments& arguments, PlanInputs& plans, CenterlineInputs& lines,
-                            LoopInputs& loops)
+                            LoopInputs& loops, LiveInputs& live)
 {
   addStandardOptions(app, kExamples);
   app.require_subcommand(1);
@@ -168,12 +180,14 @@ std::function<void()> setUp(CLI::App& app, BenchArguments& arguments, PlanInputs
   const CLI::App* by_plan = addPlanCommand(app, plans);
   const CLI::App* by_line = addCenterlineCommand(app, lines);
   const CLI::App* by_loop = addLoopCommand(app, loops);
-  return [by_accuracy, by_speed, by_plan, by_line, by_loop, &arguments, &plans, &lines, &loops] {
+  const CLI::App* by_process = addLiveCommand(app, live);
+  return [by_accuracy, by_speed, by_plan, by_line, by_loop, by_process, &arguments, &plans, &lines, &loops, &live] {
     if (by_accuracy->parsed()) return accuracy(arguments);
     if (by_speed->parsed()) return speed(arguments);
     if (by_line->parsed()) return printCenterlines(lines);
     if (by_plan->parsed()) return printPlanTables(plans);
     if (by_loop->parsed()) return printLoopTables(loops);
+    if (by_process->parsed()) return printLiveTable(live);
     detect(arguments);
   };
 }
@@ -186,7 +200,8 @@ int main(int argc, char** argv)
   PlanInputs plans;
   CenterlineInputs lines;
   LoopInputs loops;
+  LiveInputs live;
   return runProgram("eyeslam-bench",
                     "Compares this tracker, and its parts, with the alternatives; prints Markdown tables.", argc, argv,
-                    [&](CLI::App& app) { return setUp(app, arguments, plans, lines, loops); });
+                    [&](CLI::App& app) { return setUp(app, arguments, plans, lines, loops, live); });
 }

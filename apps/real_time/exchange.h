@@ -17,6 +17,10 @@ namespace eyeslam::apps {
 template <class T>
 class Exchange {
  public:
+  Exchange() = default;
+  /// @param spare  lies in the place without being new: a buffer that the first offer brings back
+  explicit Exchange(T spare) : place_(std::move(spare)) {}
+
   /// Patient side. What was in the place, taken or not, ends here.
   void offer(T value)
   {

@@ -242,7 +242,7 @@ class RandomValues {
   messaging::WantedFixture fixture()
   {
     messaging::WantedFixture fixture;
-    fixture.kind = static_cast<messaging::FixtureKind>(whole(0, 5));
+    fixture.kind = static_cast<messaging::FixtureKind>(whole(0, 6));
     fixture.lambda = number(0.0, 1.0);
     if (fixture.kind == messaging::FixtureKind::vessel) fixture.vessel = whole(0, 1000);
     if (fixture.kind == messaging::FixtureKind::point) fixture.point_px = numbers<Eigen::Vector2d>(-2000, 2000);

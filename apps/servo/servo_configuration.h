@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "eyeslam/servo/calibration.h"
+#include "eyeslam/servo/preparation.h"
+#include "eyeslam/servo/servo_options.h"
+
+namespace eyeslam::apps {
+
+/// Every option of `eyeslam-servo`: the loop's own groups, and what is prepared beside it.
+struct ServoConfiguration {
+  servo::ServoOptions servo;
+  servo::PreparationOptions preparation;
+  servo::CalibrationOptions calibration;
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& visitor)
+  {
+    servo::ServoOptions::visit(self.servo, visitor);
+    visitor.group("preparation", self.preparation);
+    visitor.group("calibration", self.calibration);
+  }
+};
+
+}  // namespace eyeslam::apps

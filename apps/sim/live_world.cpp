@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/live_world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+#include <stdexcept>
+
+#include "command_line/program.h"
+
+namespace eyeslam::apps {
+namespace {
+
+constexpr std::int64_t kPeriod_us = 1000;
+constexpr std::int64_t kMostAtOnce = 200;  // of the milliseconds that have passed; a longer pause is one of the world
+constexpr std::int64_t kSettling_steps = 2000;  // after a change of hands nothing counts
+
+}  // namespace
+
+TimedFault timedFault(const std::string& text)
+{
+  const std::size_t at = text.find('@');
+  const std::string seconds = at == std::string::npos ? "" : text.substr(at + 1);
+  char* end = nullptr;
+  const double t_s = std::strtod(seconds.c_str(), &end);
+  if (seconds.empty() || *end != 0 || !(t_s >= 0.0 && t_s <= 1e6)) {
+    throw UsageError(fmt::format("--fault {}: WHAT@SECONDS is wanted, like states_stop@20", text));
+  }
+  try {
+    return {simulation::hardwareFault(text.substr(0, at)), t_s};
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(fmt::format("--fault {}: {}", text, error.what()));
+  }
+}
+
+LiveWorld::LiveWorld(const Setting& setting, messaging::Link& link, FrameFeed& feed)
+    : setting_(setting),
+      link_(link),
+      feed_(feed),
+      statuses_(link),
+      hardware_(
+          setting.hardware, [this](double t_s) { return surgeonTask(t_s); }, link, setting.seed)
+{
+  std::sort(setting_.faults.begin(), setting_.faults.end(),
+            [](const TimedFault& a, const TimedFault& b) { return a.t_s < b.t_s; });
+}
+
+simulation::SurgeonTask LiveWorld::surgeonTask(double t_s) const
+{
+  simulation::SurgeonTask task = setting_.task.surgeon(t_s);
+  task.support = guided_since_ >= 0 ? simulation::HandTremor::Support::fixture : simulation::HandTremor::Support::none;
+  task.switches.foot_switch = setting_.foot_switch;
+  return task;
+}
+
+bool LiveWorld::cycle(const CycleStart& start)
+{
+  link_.drain({start.monotonic, start.utime});
+  const std::int64_t passed = std::min(1 + start.left_out - left_out_, kMostAtOnce);
+  left_out_ = start.left_out;
+  for (std::int64_t i = passed - 1; i >= 0; --i) {
+    step({start.monotonic - i * kPeriod_us, start.utime - i * kPeriod_us});
+  }
+  return setting_.duration_s <= 0.0 || 1e-3 * static_cast<double>(steps_) < setting_.duration_s;
+}
+
+void LiveWorld::step(const messaging::ReceiveTime& now)
+{
+  injectFaults();
+  hardware_.step(now);
+  ++steps_;
+  std::optional<simulation::FrameDue> due = hardware_.frameDue();
+  feed_.show(due ? std::make_unique<simulation::FrameDue>(std::move(*due)) : nullptr);
+  judge();
+}
+
+void LiveWorld::injectFaults()
+{
+  while (faults_done_ < setting_.faults.size() &&
+         setting_.faults[faults_done_].t_s <= 1e-3 * static_cast<double>(steps_)) {
+    hardware_.inject(setting_.faults[faults_done_++].fault);
+  }
+}
+
+bool LiveWorld::isGuided() const
+{
+  const messaging::ServoStatus* status = statuses_.latest();
+  return status != nullptr && hardware_.micronState().follows_command &&
+         (status->state == messaging::ServoState::assist || status->state == messaging::ServoState::laser);
+}
+
+void LiveWorld::judge()
+{
+  const bool guided = isGuided();
+  const bool alone = !hardware_.micronState().follows_command;
+  guided_since_ = !guided ? -1 : guided_since_ < 0 ? steps_ : guided_since_;
+  alone_since_ = !alone ? -1 : alone_since_ < 0 ? steps_ : alone_since_;
+  const double error = setting_.task.error(hardware_.truth().tipRetina());
+  if (guided_since_ >= 0 && steps_ - guided_since_ >= kSettling_steps) scores_.guided.add(error);
+  if (alone_since_ >= 0 && steps_ - alone_since_ >= kSettling_steps) scores_.alone.add(error);
+}
+
+}  // namespace eyeslam::apps
