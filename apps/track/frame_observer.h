@@ -18,6 +18,8 @@ class FrameObserver {
   /// With its part of the map worked on.
   virtual void onFrame(const files::VideoFrame& frame, const tracking::TrackResult& result,
                        baselines::Method& method) = 0;
+  /// When what a frame gave cannot be written (disk full), so that the run ends without results.
+  virtual void onFailure(const files::VideoFrame&, const tracking::TrackResult&, baselines::Method&) {}
   /// After the last frame, before results are renamed into place. @throws FileError when what was written is not whole
   virtual void finish() {}
   /// With all other results in place.

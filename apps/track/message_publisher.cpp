@@ -7,6 +7,7 @@
 #include "command_line/clocks.h"
 #include "command_line/version.h"
 #include "eyeslam/tracking/eyeslam_tracker.h"
+#include "eyeslam/tracking/masked_frame.h"
 
 namespace eyeslam::apps {
 namespace {
@@ -32,7 +33,9 @@ std::optional<messaging::Key> keyIn(const std::string& file)
 MessagePublisher::MessagePublisher(const std::string& url, const std::string& key_file, double um_per_px,
                                    double frame_rate, const std::string& configuration,
                                    const std::string& configuration_hash)
-    : link_(url, newSession(), keyIn(key_file)), vision_(link_, um_per_px, frame_rate)
+    : link_(url, newSession(), keyIn(key_file)),
+      vision_(link_, um_per_px, frame_rate),
+      period_us_(kMicroseconds / frame_rate)
 {
   mark(mark_t::START, configuration, configuration_hash);
 }
@@ -53,7 +56,19 @@ void MessagePublisher::onRead(const files::VideoFrame& frame)
 {
   const std::int64_t utime = utimeNow();
   link_.drain({static_cast<std::int64_t>(kMicroseconds * monotonicSeconds()), utime});
+  followFrameRate(frame);
   stamp_ = {frame.utime > 0 ? frame.utime : utime, frame.number, frame.exposure};
+}
+
+// The tracker's velocity is one per frame that it was given, and a live source leaves frames out.
+void MessagePublisher::followFrameRate(const files::VideoFrame& frame)
+{
+  constexpr double kShare = 0.2;  // of the newest: as long a memory as the tracker's filter has
+  if (frame.utime > last_utime_ && last_utime_ > 0) {
+    period_us_ += kShare * (static_cast<double>(frame.utime - last_utime_) - period_us_);
+    vision_.setFrameRate(kMicroseconds / period_us_);
+  }
+  last_utime_ = frame.utime;
 }
 
 // What the loop waits for goes out before the map is worked on.
@@ -61,9 +76,22 @@ void MessagePublisher::onTracked(const files::VideoFrame&, const tracking::Track
                                  baselines::Method& method)
 {
   vision_.publishPose(stamp_, result, method.vesselMap().version, utimeNow());
-  if (const tracking::EyeSlamTracker* tracker = method.eyeSlam()) {
-    vision_.publishInstrument(stamp_, tracker->getToolTip(), {}, utimeNow());
-  }
+  const tracking::EyeSlamTracker* const tracker = method.eyeSlam();
+  if (tracker == nullptr) return;
+  if (result.reason == retina::Reason::frozen)  // where it was in the picture before
+    vision_.publishInstrument(stamp_, {}, {}, utimeNow());
+  else
+    vision_.publishInstrument(stamp_, tracker->getToolTip(), tracker->getAimingSpot(), utimeNow());
+}
+
+void MessagePublisher::onFailure(const files::VideoFrame& frame, const tracking::TrackResult& result,
+                                 baselines::Method& method)
+{
+  tracking::TrackResult last = result;
+  tracking::refuseFrame(last, retina::Reason::record_failed);
+  const std::int64_t utime = utimeNow();
+  vision_.publishPose({utime, frame.number, 0.0}, last, method.vesselMap().version, utime);
+  mark(mark_t::STOP, "", "");
 }
 
 void MessagePublisher::onFrame(const files::VideoFrame&, const tracking::TrackResult&, baselines::Method& method)

@@ -28,15 +28,21 @@ class MessagePublisher : public FrameObserver {
   void onTracked(const files::VideoFrame& frame, const tracking::TrackResult& result,
                  baselines::Method& method) override;
   void onFrame(const files::VideoFrame& frame, const tracking::TrackResult& result, baselines::Method& method) override;
+  /// Tells as the last pose that vision has stopped, and why.
+  void onFailure(const files::VideoFrame& frame, const tracking::TrackResult& result,
+                 baselines::Method& method) override;
   void finish() override;
 
  private:
+  void followFrameRate(const files::VideoFrame& frame);
   void mark(std::int16_t kind, const std::string& configuration, const std::string& configuration_hash);
 
   messaging::Link link_;
   messaging::Publisher<mark_t> marks_{link_};
   vision::VisionPublisher vision_;
   messaging::FrameStamp stamp_;  // of the frame that was read last
+  std::int64_t last_utime_ = 0;  // of the last frame that bore its own time
+  double period_us_;             // mean of the frames that bear their own time
 };
 
 }  // namespace eyeslam::apps

@@ -17,9 +17,9 @@ void OverlayWriter::onFrame(const files::VideoFrame& frame, const tracking::Trac
   if (pictures_++ % kMosaicPeriod == 0) mosaic_ = method.mosaic();
   const tracking::EyeSlamTracker* const tracker = method.eyeSlam();
   const std::vector<cv::Point2f> points = method.points();
-  video_.add(
-      overlay_.draw({frame.image, points, method.vesselMap(), mosaic_.picture, mosaic_.origin, mosaic_.px_per_pixel,
-                     result, tracker ? tracker->getToolTip() : tracking::ToolTip{}, frame.t}));
+  video_.add(overlay_.draw({frame.image, points, method.vesselMap(), mosaic_.picture, mosaic_.origin,
+                            mosaic_.px_per_pixel, result, tracker ? tracker->getToolTip() : tracking::ToolTip{},
+                            frame.t, tracker ? tracker->getAimingSpot() : tracking::AimingSpot{}}));
 }
 
 }  // namespace eyeslam::apps

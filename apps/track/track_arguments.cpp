@@ -20,15 +20,19 @@ const char* const kExamples =
     "  eyeslam-track frames/ --out results --fps 25 --um-per-px 5.2\n"
     "  eyeslam-track 'frames/im*.png' --out results --set frame.scale=0.4 --snapshots 60,150\n"
     "  eyeslam-track camera:0 --out results --display --record camera.mkv\n"
+    "  eyeslam-track shm:eye --out results --no-overlay --lcm '' --key micron.key\n"
     "  eyeslam-track --dump-config > my.yaml && eyeslam-track surgery.mp4 --out results --config my.yaml\n";
 
 void addInputs(CLI::App& app, TrackArguments& a)
 {
-  app.add_option("INPUT", a.input, "Video file, image folder, glob of images, or camera:N");
+  app.add_option("INPUT", a.input, "Video file, image folder, glob of images, camera:N, or shm:NAME");
   app.add_option("--out", a.out, "Folder for the results")->type_name("DIR");
   app.add_option("--from", a.from, "First frame, from 0")->type_name("FRAME")->check(frameNumber());
   app.add_option("--to", a.to, "Last frame")->type_name("FRAME")->check(frameNumber());
   app.add_option("--fps", a.fps, "Frames per second of images")->type_name("F")->check(within(0.001, 100000.0));
+  app.add_option("--timeout", a.timeout, "How long shm:NAME and each of its frames is waited for")
+      ->type_name("S")
+      ->check(within(0.01, 1e6));
   app.add_option("--um-per-px", a.um_per_px,
                  "Size of a pixel of the first frame; default: that of meta.json beside INPUT")
       ->type_name("UM")

@@ -25,6 +25,7 @@ struct TrackArguments {
   std::vector<std::int64_t> snapshots;
   std::optional<double> um_per_px;
   double fps = 30.0;               ///< of images
+  double timeout = 5.0;            ///< s without a frame in shared memory until it counts as ended
   std::string record;              ///< lossless video of the processed frames, or empty
   std::string truth;               ///< folder with a sequence's truth, or empty
   std::optional<std::string> lcm;  ///< URL of LCM; empty = LCM_DEFAULT_URL

@@ -38,6 +38,7 @@ files::VideoSourceOptions sourceOptions(const TrackArguments& arguments)
   options.frames_per_second = arguments.fps;
   options.last_frame = arguments.to;
   options.now = monotonicSeconds;
+  options.patience = arguments.timeout;
   return options;
 }
 
@@ -51,6 +52,7 @@ std::unique_ptr<files::VideoSource> openSource(const TrackArguments& arguments, 
     progress->show(checked);
     return !interruption.requested();
   };
+  options.stopped = [&interruption] { return interruption.requested(); };
   std::optional<Interruption::Suspension> abrupt;
   if (arguments.input.rfind("camera:", 0) == 0) abrupt.emplace(interruption);
   return files::openVideoSource(arguments.input, options);
@@ -144,6 +146,7 @@ void TrackRun::run()
   writeRecord(monotonicSeconds() - start);
   publish();
   sayNotices();
+  sayFramesLeftOut();
   saySnapshotsMissed();
   sayMapCutOff();
   sayDone();
@@ -160,22 +163,37 @@ void TrackRun::trackFrames()
   }
 }
 
+// What somebody waits for goes out before anything is drawn, encoded or written.
 void TrackRun::trackFrame(const files::VideoFrame& frame)
 {
   for (const auto& observer : observers_) observer->onRead(frame);
   const double start = threadCpuMilliseconds();
-  const tracking::TrackResult& result = method_->track(frame.image);
+  const tracking::TrackResult& result = localize(frame);
   const double localized = threadCpuMilliseconds();
   for (const auto& observer : observers_) observer->onTracked(frame, result, *method_);
   const double told = threadCpuMilliseconds();
-  method_->updateMap();
-  const files::TrajectoryRow row{frame.number, frame.t, result, localized - start, threadCpuMilliseconds() - told};
-  trajectory_.add(row);
+  if (result.reason != retina::Reason::frozen) method_->updateMap();
+  keep({frame.number, frame.t, result, localized - start, threadCpuMilliseconds() - told}, frame);
+}
+
+const tracking::TrackResult& TrackRun::localize(const files::VideoFrame& frame)
+{
+  return source_->isLive() ? live_.track(*method_, frame.image) : method_->track(frame.image);
+}
+
+void TrackRun::keep(const files::TrajectoryRow& row, const files::VideoFrame& frame)
+{
   summary_.add(row);
   last_frame_ = frame.number;
-  for (const auto& observer : observers_) observer->onFrame(frame, result, *method_);
-  if (snapshots_.count(frame.number) > 0) files::writeMap(folder_, method_->vesselMap(), frame.number, pixel_size_);
-  if (summary_.frames() % kSpaceCheckPeriod == 0) folder_.checkSpace();
+  try {
+    trajectory_.add(row);
+    for (const auto& observer : observers_) observer->onFrame(frame, row.result, *method_);
+    if (snapshots_.count(frame.number) > 0) files::writeMap(folder_, method_->vesselMap(), frame.number, pixel_size_);
+    if (summary_.frames() % kSpaceCheckPeriod == 0) folder_.checkSpace();
+  } catch (const files::FileError&) {
+    for (const auto& observer : observers_) observer->onFailure(frame, row.result, *method_);
+    throw;
+  }
 }
 
 // The last frame's map is the finished one, also where a snapshot of that frame was asked for.
@@ -209,6 +227,7 @@ void TrackRun::writeRecord(double wall_s) const
   record["last_frame"] = last_frame_;
   record["interrupted"] = interrupted_;
   record["counts"] = summary_.counts();
+  if (source_->isLive()) record["frames_left_out"] = source_->framesLeftOut();
   record["map_cut_off"] = isMapCutOff(*method_);
   record["notices"] = source_->notices();
   record["timing"] = summary_.timing(wall_s);
@@ -227,6 +246,13 @@ void TrackRun::sayNotices()
   for (; notices_said_ < notices.size(); ++notices_said_) {
     if (!arguments_.quiet) fmt::print(stderr, "eyeslam-track: {}\n", notices[notices_said_]);
   }
+}
+
+void TrackRun::sayFramesLeftOut() const
+{
+  if (arguments_.quiet || source_->framesLeftOut() == 0) return;
+  fmt::print(stderr, "eyeslam-track: {} frames left out, for newer ones had come before they could be tracked\n",
+             source_->framesLeftOut());
 }
 
 void TrackRun::sayInterrupted() const

@@ -12,6 +12,7 @@
 #include "eyeslam/files/pixel_size.h"
 #include "eyeslam/files/trajectory_file.h"
 #include "eyeslam/files/video_source.h"
+#include "eyeslam/vision/frozen_picture.h"
 #include "track/frame_observer.h"
 #include "track/run_summary.h"
 #include "track/track_arguments.h"
@@ -33,10 +34,13 @@ class TrackRun {
   void addOverlay(double frames_per_second);
   void trackFrames();
   void trackFrame(const files::VideoFrame& frame);
+  const tracking::TrackResult& localize(const files::VideoFrame& frame);
+  void keep(const files::TrajectoryRow& row, const files::VideoFrame& frame);
   void finishMaps();
   void writeRecord(double wall_s) const;
   void publish();
   void sayNotices();
+  void sayFramesLeftOut() const;
   void sayInterrupted() const;
   void saySnapshotsMissed() const;
   void sayMapCutOff() const;
@@ -48,6 +52,7 @@ class TrackRun {
   std::unique_ptr<files::VideoSource> source_;
   files::PixelSize pixel_size_;
   std::unique_ptr<baselines::Method> method_;
+  vision::FrozenPicture live_;
   files::OutputFolder folder_;
   files::TrajectoryFile trajectory_;
   std::vector<std::unique_ptr<FrameObserver>> observers_;

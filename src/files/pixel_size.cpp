@@ -38,7 +38,9 @@ PixelSize readMeta(const std::string& path)
 PixelSize pixelSizeOf(const std::string& input, std::optional<double> given_um_per_px)
 {
   if (given_um_per_px) return {given_um_per_px, "--um-per-px"};
-  if (input.rfind("camera:", 0) == 0) return {std::nullopt, "unknown"};  // nothing lies beside a camera
+  for (const char* live : {"camera:", "shm:"}) {
+    if (input.rfind(live, 0) == 0) return {std::nullopt, "unknown"};  // nothing lies beside them
+  }
   std::error_code error;
   const fs::path folder = fs::is_directory(input, error) ? fs::path(input) : fs::path(input).parent_path();
   const fs::path meta = folder / "meta.json";

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <opencv2/imgproc.hpp>
+#include <system_error>
 
 #include "eyeslam/files/file_error.h"
 
@@ -53,6 +55,21 @@ void VideoFile::add(const cv::Mat& image)
   if (image.channels() == 1) cv::cvtColor(part, colour_, cv::COLOR_GRAY2BGR);
   writer_.write(image.channels() == 1 ? colour_ : part);
   ++count_;
+  if (coding_ == VideoCoding::lossless) checkGrowth();
+}
+
+// OpenCV's writer does not tell that the disk is full. A frame has a bit a sample at least, and its bytes wait in a
+// buffer of FFmpeg's for a while.
+void VideoFile::checkGrowth()
+{
+  constexpr std::int64_t kBuffer = 256 * 1024;  // bytes; FFmpeg has 32 KiB
+  std::error_code none;
+  const std::uintmax_t bytes = std::filesystem::file_size(path_, none);
+  const bool grew = !none && bytes > bytes_;
+  frames_unseen_ = grew ? 0 : frames_unseen_ + 1;
+  if (grew) bytes_ = bytes;
+  if (frames_unseen_ * 3 * size_.area() / 8 <= kBuffer) return;
+  throw FileError(fmt::format("{}: cannot be written beyond {} bytes; is the disk full?", shown_, bytes_));
 }
 
 void VideoFile::close()

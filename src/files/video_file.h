@@ -18,7 +18,8 @@ class VideoFile {
 
   /// Adds a frame, 8 bit, grey or BGR; all of one size an odd last row or column is left out, or
   /// refused where nothing may be lost.
-  /// @throws FileError when the encoder cannot be started, or the frame is not like the first
+  /// @throws FileError when the encoder cannot be started, the frame is not like the first, or a lossless file has
+  ///                   stopped growing (disk full), which shows within 0.3 MB of frames
   void add(const cv::Mat& image);
 
   /// Ends the file and counts what arrived. Without a frame there is no file.
@@ -27,6 +28,7 @@ class VideoFile {
 
  private:
   void open(const cv::Mat& image);
+  void checkGrowth();
 
   std::string path_;
   std::string shown_;
@@ -36,6 +38,8 @@ class VideoFile {
   cv::Size size_;
   cv::Mat colour_;
   std::int64_t count_ = 0;
+  std::uintmax_t bytes_ = 0;        // of the file when it last grew
+  std::int64_t frames_unseen_ = 0;  // since then
 };
 
 }  // namespace eyeslam::files

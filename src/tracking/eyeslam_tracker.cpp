@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "eyeslam/tracking/eyeslam_tracker.h"
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 
 #include "eyeslam/tracking/detection.h"
@@ -26,6 +27,7 @@ class EyeSlamTracker::Steps {
   const TrackerOptions& options() const { return options_; }
   const TrackResult& result() const { return result_; }
   const ToolTip& tool() const { return tool_result_; }
+  const AimingSpot& spot() const { return spot_result_; }
   const retina::VesselMap& vesselMap() const { return published_.map(); }
   bool isMapCutOff() const { return published_.isCutOff(); }
   std::vector<cv::Point2f> pointsInImage() const;
@@ -35,6 +37,7 @@ class EyeSlamTracker::Steps {
   cv::Mat bgr;  // a ViSP image as the frame wants it
 
  private:
+  void removePointsInSpot();
   const TrackResult& startMap();
   const TrackResult& startAgain(const MaskedContrast& picture);
   void beginAt(const MaskedContrast& picture, const PoseEstimate& mosaic_T_frame);
@@ -45,6 +48,7 @@ class EyeSlamTracker::Steps {
   TrackerOptions options_;
   MaskedFrame masked_;
   ToolTipTracker tool_;
+  AimingSpotFinder spot_;
   std::unique_ptr<VesselDetector> detector_;
   StructureCheck structure_;
   PointSelector selector_;
@@ -63,12 +67,14 @@ class EyeSlamTracker::Steps {
   std::int64_t start_frame_ = 0;
   TrackResult result_;
   ToolTip tool_result_;
+  AimingSpot spot_result_;
 };
 
 EyeSlamTracker::Steps::Steps(const TrackerOptions& options)
     : options_(options),
       masked_(options),
       tool_(options.tool),
+      spot_(options.aiming_spot),
       detector_(makeDetector(options)),
       structure_(options.structure),
       selector_(options.selector),
@@ -91,8 +97,10 @@ const TrackResult& EyeSlamTracker::Steps::track(const cv::Mat& image)
   const OcclusionMask& mask = masked_.mask();
   const MaskedContrast picture = masked_.contrast();
   tool_result_ = tool_.update(frame, mask, image);
+  spot_result_ = spot_.update(image, frame.white(), tool_result_);
   // Detect: Z_t, the vessel points of this frame.
   detector_->detect(frame, mask, points_);
+  removePointsInSpot();
   selector_.choose(points_, frame.centre(), chosen_);
   if (mosaic_.empty()) return startMap();
   if (anchor_.isBetterStart(picture, framesSinceStart())) return startAgain(picture);
@@ -109,6 +117,20 @@ const TrackResult& EyeSlamTracker::Steps::track(const cv::Mat& image)
   anchor_.update(mosaic_, framesSinceStart());
   if (scale_.update(picture, mosaic_, pose, framesSinceStart())) anchor_.restore(mosaic_);
   return accept(mosaic_T_frame, found.score);
+}
+
+// The red light passes the colour test, and its edge is a line like any other (facts, A6).
+void EyeSlamTracker::Steps::removePointsInSpot()
+{
+  if (!spot_result_.present) return;
+  const Frame& frame = masked_.frame();
+  const Eigen::Vector2d image(spot_result_.x_px, spot_result_.y_px);
+  const Eigen::Vector2d spot = (image - frame.centreInImage()).cwiseQuotient(frame.pixelSize()) + frame.centre();
+  const double reach = spot_.reach() / frame.pixelSize().x();
+  const auto isInSpot = [&](const VesselPoint& point) {
+    return (Eigen::Vector2d(point.x, point.y) - spot).squaredNorm() < reach * reach;
+  };
+  points_.erase(std::remove_if(points_.begin(), points_.end(), isInSpot), points_.end());
 }
 
 const TrackResult& EyeSlamTracker::Steps::startMap()
@@ -154,6 +176,7 @@ const TrackResult& EyeSlamTracker::Steps::refuse(Reason why)
     points_.clear();
     chosen_.clear();
     tool_result_ = {};
+    spot_result_ = {};
   }
   return refuseFrame(result_, why, static_cast<int>(chosen_.size()));
 }
@@ -273,6 +296,7 @@ void EyeSlamTracker::updateMap() { steps_->updateMap(); }
 void EyeSlamTracker::finishMap() { steps_->finishMap(); }
 const TrackResult& EyeSlamTracker::getResult() const { return steps_->result(); }
 const ToolTip& EyeSlamTracker::getToolTip() const { return steps_->tool(); }
+const AimingSpot& EyeSlamTracker::getAimingSpot() const { return steps_->spot(); }
 std::vector<cv::Point2f> EyeSlamTracker::getPoints() const { return steps_->pointsInImage(); }
 bool EyeSlamTracker::isMapCutOff() const { return steps_->isMapCutOff(); }
 const retina::VesselMap& EyeSlamTracker::getVesselMap() const { return steps_->vesselMap(); }

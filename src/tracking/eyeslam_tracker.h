@@ -53,6 +53,7 @@ class EyeSlamTracker : public vpTracker {
   const TrackResult& getResult() const;
   const retina::Pose2& getPose() const { return getResult().map_T_frame; }
   const ToolTip& getToolTip() const;
+  const AimingSpot& getAimingSpot() const;
   /// The vessel points found in the last frame, full px of the image.
   std::vector<cv::Point2f> getPoints() const;
   /// The published vessel map; full-resolution px, cells of `px_per_cell`.

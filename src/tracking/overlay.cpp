@@ -161,6 +161,7 @@ void Overlay::drawReprojection(const OverlayScene& scene, cv::Mat panel)
     colours_.copyTo(panel, warped_ >= 128);
   }
   drawInstrument(scene.tip, panel);
+  drawSpot(scene.spot, panel);
   label(panel, scene.tip.present ? "Map in the frame, instrument" : "Map in the frame");
 }
 
@@ -207,6 +208,16 @@ void Overlay::drawInstrument(const ToolTip& tip, cv::Mat& panel) const
                static_cast<float>(turn)},
               kTool, 1, cv::LINE_AA);
   ring(panel, at, 1.2, kView, -1);
+}
+
+// A cross that leaves the spot itself free.
+void Overlay::drawSpot(const AimingSpot& spot, cv::Mat& panel) const
+{
+  if (!spot.present) return;
+  const cv::Point2d at = cv::Point2d(spot.x_px, spot.y_px) * panel_per_px_;
+  for (const cv::Point2d& arm : {cv::Point2d(1, 0), cv::Point2d(-1, 0), cv::Point2d(0, 1), cv::Point2d(0, -1)}) {
+    line(panel, at + 4.0 * arm, at + 10.0 * arm, kPoint);
+  }
 }
 
 void Overlay::drawOutline(const OverlayScene& scene, cv::Mat& panel) const

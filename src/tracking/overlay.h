@@ -37,6 +37,7 @@ struct OverlayScene {
   const TrackResult& result;
   const ToolTip& tip;
   double time_s = 0.0;
+  AimingSpot spot = {};
 };
 
 /// The four panels of the paper's Fig. 1: the frame with its vessel points; the map with the outline of the view; the
@@ -59,6 +60,7 @@ class Overlay {
   void drawReprojection(const OverlayScene& scene, cv::Mat panel);
   void drawMosaic(const OverlayScene& scene, cv::Mat panel);
   void drawInstrument(const ToolTip& tip, cv::Mat& panel) const;
+  void drawSpot(const AimingSpot& spot, cv::Mat& panel) const;
   void drawOutline(const OverlayScene& scene, cv::Mat& panel) const;
   void writeStatus(const OverlayScene& scene, cv::Mat line) const;
 

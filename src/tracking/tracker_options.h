@@ -4,6 +4,7 @@
 #include <string>
 
 #include "eyeslam/retina/options.h"
+#include "eyeslam/tracking/aiming_spot.h"
 #include "eyeslam/tracking/anchor.h"
 #include "eyeslam/tracking/cross_vessel_smoother.h"
 #include "eyeslam/tracking/dense_search.h"
@@ -99,6 +100,7 @@ struct TrackerOptions {
   AnchorOptions anchor;
   ScaleEvidenceOptions scale;
   ToolTipOptions tool;
+  AimingSpotOptions aiming_spot;
   PublishedMapOptions published;
 
   template <class Self, class Visitor>
@@ -127,6 +129,7 @@ struct TrackerOptions {
     visitor.group("anchor", self.anchor);
     visitor.group("scale", self.scale);
     visitor.group("tool", self.tool);
+    visitor.group("aiming_spot", self.aiming_spot);
     visitor.group("published", self.published);
   }
 };

@@ -69,7 +69,7 @@ class OverlayPicture : public testing::Test {
   const cv::Mat& draw(cv::Size size = {800, 608}, int type = CV_8UC3)
   {
     frame = cv::Mat(size, type, cv::Scalar::all(60));
-    return overlay.draw({frame, points, map, mosaic, {0.0, 0.0}, 2.0, result, tip, 1.0});
+    return overlay.draw({frame, points, map, mosaic, {0.0, 0.0}, 2.0, result, tip, 1.0, spot});
   }
 
   cv::Mat frame, mosaic;
@@ -77,6 +77,7 @@ class OverlayPicture : public testing::Test {
   VesselMap map;
   TrackResult result;
   ToolTip tip;
+  AimingSpot spot;
   Overlay overlay;
 };
 
@@ -144,6 +145,17 @@ TEST_F(OverlayPicture, RingsTheTip)
   tip.x_px = 400.0;
   tip.y_px = 304.0;
   tip.shaft_width_px = 30.0;
+  const cv::Mat after = draw();
+  const cv::Rect around(195, 304 + 4 + 147, 11, 11);
+  EXPECT_GT(cv::norm(before(around), after(around), cv::NORM_INF), 50.0);
+}
+
+TEST_F(OverlayPicture, MarksTheAimingSpot)
+{
+  const cv::Mat before = draw().clone();
+  spot.present = true;
+  spot.x_px = 400.0;
+  spot.y_px = 304.0;
   const cv::Mat after = draw();
   const cv::Rect around(195, 304 + 4 + 147, 11, 11);
   EXPECT_GT(cv::norm(before(around), after(around), cv::NORM_INF), 50.0);
