@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 #include <random>
+#include <stdexcept>
 #include <thread>
 
 #include "command_line/clocks.h"
@@ -88,8 +89,10 @@ void servoToPoint(const Arguments& arguments)
     waitForFrame(now, link, hardware.get());
   }
   micron.setRobotState(vpRobot::STATE_STOP);
-  fmt::print("the tip is {:.0f} um RMS from the point{}\n", 1e3 * std::sqrt(squares / kJudged),
-             micron.isSaturated() ? ", for that is out of reach" : "");
+  const double rms_um = 1e3 * std::sqrt(squares / kJudged);
+  fmt::print("the tip is {:.0f} um RMS from the point\n", rms_um);
+  constexpr double kNear_um = 100.0;  // a trembling hand is 100 um and more away
+  if (rms_um > kNear_um) throw std::runtime_error(micron.isSaturated() ? "out of reach" : "the tip did not get there");
 }
 
 std::function<void()> setUp(CLI::App& app, Arguments& arguments)

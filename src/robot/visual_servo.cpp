@@ -127,7 +127,7 @@ Reason VisualServo::lawOf(const Sight& sight, const vpMatrix& fJe, Eigen::Vector
   const bool finite = effect.allFinite() && sight.current.allFinite() && sight.desired.allFinite();
   if (!finite) return Reason::input_not_finite;
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(effect);
-  const Eigen::Vector3d sizes = svd.singularValues();
+  const Eigen::Vector3d& sizes = svd.singularValues();
   if (!(sizes[2] > options_.least_condition * sizes[0])) return Reason::servo_singular;
   current_.set_s(sight.current.x(), sight.current.y(), sight.current.z());
   desired_.set_s(sight.desired.x(), sight.desired.y(), sight.desired.z());
