@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kMicro = 1e-6;
 constexpr double kMilli = 1e-3;
+constexpr double kNear = 100e-6;  // m: what the tip is behind a goal at 20 mm/s, by the plant's lead
 
 Eigen::Vector3d shortened(const Eigen::Vector3d& way, double longest)
 {
@@ -74,11 +75,13 @@ MicronController::Source MicronController::chosen(const HeardCommand<MicronComma
   return at_null ? Source::at_null : Source::own_filter;
 }
 
+// From the goal before, or from near the tip where that is still far behind its goal.
 void MicronController::change(Source source)
 {
   if (source == source_) return;
   source_ = source;
-  from_ = goal_;
+  const Eigen::Vector3d& tip = tip_.fresh().tip;
+  from_ = tip + shortened(goal_ - tip, kNear);
   ramp_s_ = 0.0;
 }
 
@@ -89,46 +92,42 @@ double MicronController::ramp()
   return options_.ramp_ms > 0.0 ? retina::smoothstep(ramp_s_ / (options_.ramp_ms * kMilli)) : 1.0;
 }
 
-void MicronController::followGoal(const Eigen::Vector3d& wanted, double speed)
+void MicronController::followGoal(const Eigen::Vector3d& wanted)
 {
-  const Eigen::Vector3d way = from_ + ramp() * (wanted - from_) - goal_;
-  slowed_ = way.norm() > speed * period_s_;
-  goal_ += shortened(way, speed * period_s_);
+  goal_ = from_ + ramp() * (wanted - from_);
   deflection_ = goal_ - null_;
 }
 
-// The tip's speed is the deflection's and the hand's; the hand's is measured, and its noise must not shake the tip.
-void MicronController::followDeflection(const Eigen::Vector3d& wanted, double speed)
+void MicronController::followDeflection(const Eigen::Vector3d& wanted)
 {
-  const Eigen::Vector3d blended = wanted + (1.0 - ramp()) * (from_ - null_ - wanted);
-  const Eigen::Vector3d way = blended - deflection_ + calm_step_;
-  slowed_ = way.norm() > speed * period_s_;
-  if (slowed_) {
-    deflection_ += shortened(way, speed * period_s_) - calm_step_;
-  } else {
-    deflection_ = blended;
-  }
+  deflection_ = wanted + (1.0 - ramp()) * (from_ - null_ - wanted);
   goal_ = null_ + deflection_;
 }
 
 void MicronController::steer(const MicronCommand* command)
 {
-  const double own_speed = options_.own_speed_mm_s * kMilli;
   const Eigen::Vector3d calm_hand = filter_.step(null_);
-  slowed_ = false;
   switch (source_) {
     case Source::at_null:
-      return followDeflection(Eigen::Vector3d::Zero(), own_speed);
+      return followDeflection(Eigen::Vector3d::Zero());
     case Source::own_filter:
-      return followGoal(calm_hand, own_speed);
+      return followGoal(calm_hand);
     case Source::tip_goal:
-      return followGoal(manipulator_T_world_.inverse() * command->goal, command->speed_bound);
+      return followGoal(manipulator_T_world_.inverse() * command->goal);
     case Source::deflection:
-      return followDeflection(manipulator_T_world_.linear().transpose() * command->goal, command->speed_bound);
+      return followDeflection(manipulator_T_world_.linear().transpose() * command->goal);
     case Source::no_power:
       goal_ = null_ + deflection_;
       return;
   }
+}
+
+void MicronController::begin(const HeldManipulator& held)
+{
+  filter_.hold(held.null);
+  goal_ = from_ = calm_null_ = held.null;
+  way_ = manipulator_T_world_.linear() * -held.shaft;
+  started_ = true;
 }
 
 const messaging::MicronState& MicronController::step(const HeldManipulator& held,
@@ -136,30 +135,37 @@ const messaging::MicronState& MicronController::step(const HeldManipulator& held
 {
   // Before the first measurement it has nothing but the hand itself.
   null_ = started_ ? tip_.fresh().null : held.null;
-  if (!started_) {
-    filter_.hold(null_);
-    goal_ = from_ = calm_null_ = null_;
-    way_ = manipulator_T_world_.linear() * -held.shaft;
-    started_ = true;
+  const Source source = chosen(heard);
+  if (started_) {
+    change(source);
+  } else {
+    begin(held);
+    if (source != source_) ramp_s_ = 0.0;
+    source_ = source;
   }
-  const double eased = options_.calm_ms > 0.0 ? 1.0 - std::exp(-period_s_ / (options_.calm_ms * kMilli)) : 1.0;
-  calm_step_ = eased * (null_ - calm_null_);
-  calm_null_ += calm_step_;
-  change(chosen(heard));
   steer(heard.command);
+  move(held, heard);
+  report(heard);
+  return state_;
+}
+
+void MicronController::move(const HeldManipulator& held, const HeardCommand<MicronCommand>& heard)
+{
+  const double eased = options_.calm_ms > 0.0 ? 1.0 - std::exp(-period_s_ / (options_.calm_ms * kMilli)) : 1.0;
+  const Eigen::Vector3d hand_step = eased * (null_ - calm_null_);
+  calm_null_ += hand_step;
+  const bool follows = source_ == Source::tip_goal || source_ == Source::deflection;
+  const double speed = follows ? heard.command->speed_bound : options_.own_speed_mm_s * kMilli;
+  tip_.boundSpeed(speed, hand_step / period_s_);
+  pivot_.boundSpeed(speed, hand_step / period_s_);
   tip_.commandDeflection(deflection_);
   tip_.setShaft(held.shaft);
   tip_.step(held.null, held.port);
+  if (!powered_) return pivot_.stepUnpowered(held.null, held.shaft);
   const bool commanded = state_.reason == Reason::none || state_.reason == Reason::other_mode;
   std::optional<Eigen::Vector3d> pivot;
   if (commanded && heard.command->keep_pivot) pivot = manipulator_T_world_.inverse() * heard.command->pivot;
-  if (powered_) {
-    pivot_.step(held.null, held.shaft, deflection_, pivot);
-  } else {
-    pivot_.stepUnpowered(held.null, held.shaft);
-  }
-  report(heard);
-  return state_;
+  pivot_.step(held.null, held.shaft, deflection_, pivot);
 }
 
 messaging::ToolPose MicronController::toolPose(const Eigen::Vector3d& tip, const Eigen::Vector3d& up,
@@ -188,8 +194,7 @@ void MicronController::report(const HeardCommand<MicronCommand>& heard)
   }
   const MicronLimits& limits = tip_.limits();
   const bool off_pivot = pivot_.isAsked() && pivot_.isThere() && pivotError() > options_.pivot.tolerance_um * kMicro;
-  state_.limits = {limits.lateral, limits.axial, limits.speed || slowed_, limits.acceleration,
-                   pivot_.isLimited() || off_pivot};
+  state_.limits = {limits.lateral, limits.axial, limits.speed, limits.acceleration, pivot_.isLimited() || off_pivot};
   state_.powered = powered_;
   state_.cancels_tremor = source_ == Source::own_filter;
   state_.follows_command = follows;

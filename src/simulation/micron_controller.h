@@ -56,9 +56,11 @@ class MicronController {
   Source chosen(const HeardCommand<messaging::MicronCommand>& heard);
   void change(Source source);
   double ramp();
-  void followGoal(const Eigen::Vector3d& wanted, double speed);
-  void followDeflection(const Eigen::Vector3d& wanted, double speed);
+  void begin(const HeldManipulator& held);
+  void followGoal(const Eigen::Vector3d& wanted);
+  void followDeflection(const Eigen::Vector3d& wanted);
   void steer(const messaging::MicronCommand* command);
+  void move(const HeldManipulator& held, const HeardCommand<messaging::MicronCommand>& heard);
   void report(const HeardCommand<messaging::MicronCommand>& heard);
   messaging::ToolPose toolPose(const Eigen::Vector3d& tip, const Eigen::Vector3d& up, double along) const;
 
@@ -74,10 +76,9 @@ class MicronController {
   Eigen::Vector3d from_ = Eigen::Vector3d::Zero();  // where the goal was then
   Eigen::Vector3d goal_ = Eigen::Vector3d::Zero();  // of the tip, that is followed
   Eigen::Vector3d null_ = Eigen::Vector3d::Zero();  // measured just now
-  Eigen::Vector3d calm_null_ = Eigen::Vector3d::Zero(), calm_step_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d calm_null_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d deflection_ = Eigen::Vector3d::Zero();
   bool started_ = false;
-  bool slowed_ = false;                             // by the speed that is allowed
   Eigen::Vector3d way_ = Eigen::Vector3d::UnitZ();  // of the tool at the start, manipulator's frame: fixes its roll
   messaging::MicronState state_;
 };

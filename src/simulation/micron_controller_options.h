@@ -65,10 +65,11 @@ struct MicronControllerOptions {
     visitor.field("ramp_ms", self.ramp_ms, Range{0, 2000}, "ms",
                   "from one way of choosing the goal to another; source: issue, 100-200 ms");
     visitor.field("own_speed_mm_s", self.own_speed_mm_s, Range{0.1, 200}, "mm/s",
-                  "largest speed of a goal that no command bounds; source: loop study, 2.7");
-    visitor.field("calm_ms", self.calm_ms, Range{0, 100}, "ms",
-                  "time constant over which the hand's speed is measured, to bound the tip's under a commanded "
-                  "deflection; source: our choice, 3 um of noise then is below 1 mm/s");
+                  "largest speed of the tip that no command bounds; source: loop study, 2.7");
+    visitor.field(
+        "calm_ms", self.calm_ms, Range{0, 100}, "ms",
+        "time constant over which the hand's speed is measured, to bound the tip's; source: our choice, 3 um of "
+        "noise then is near 1 mm/s");
     visitor.field("handle_mm", self.handle_mm, Range{1, 500}, "mm",
                   "from the tip to the handle's origin; source: facts, B1, base and height of the manipulator, and a "
                   "needle");

@@ -113,6 +113,11 @@ void MicronModel::actuate(const Eigen::Vector3d& target, double time_s)
   const Eigen::Vector3d faster = velocity_ + time_s * shortened(pull, options_.acceleration_m_s2);
   limits_.speed |= faster.norm() > options_.speed_mm_s * kMilli;
   velocity_ = shortened(faster, options_.speed_mm_s * kMilli);
+  const Eigen::Vector3d tip_velocity = velocity_ + hand_velocity_;
+  if (tip_velocity.norm() > tip_speed_) {
+    limits_.speed = true;
+    velocity_ = shortened(tip_velocity, tip_speed_) - hand_velocity_;
+  }
   const Eigen::Vector3d moved = position_ + time_s * velocity_;
   position_ = withinReach(moved);
   if (position_ != moved) velocity_ = (position_ - (moved - time_s * velocity_)) / time_s;

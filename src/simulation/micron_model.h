@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "eyeslam/simulation/micron_options.h"
 #include "eyeslam/simulation/random.h"
@@ -44,6 +45,14 @@ class MicronModel {
   /// The reach is a cylinder about the null along this direction; before the first call it is a ball.
   /// @param shaft  unit vector
   void setShaft(const Eigen::Vector3d& shaft) { shaft_ = shaft; }
+  /// Bounds the tip's speed besides the deflection's, from now on. It is the motion that is bounded, not the command:
+  /// one that leads a slow plant changes faster than the tip.
+  /// @param hand  velocity at which the hand carries the null, as measured, m/s
+  void boundSpeed(double speed, const Eigen::Vector3d& hand)
+  {
+    tip_speed_ = speed;
+    hand_velocity_ = hand;
+  }
   void commandDeflection(const Eigen::Vector3d& deflection);
   /// The controller subtracts the null that it measures at each step itself.
   void commandTip(const Eigen::Vector3d& goal);
@@ -84,6 +93,8 @@ class MicronModel {
   Eigen::Vector3d command_ = Eigen::Vector3d::Zero();
   bool command_is_tip_ = false;
   Eigen::Vector3d shaft_ = Eigen::Vector3d::Zero();
+  double tip_speed_ = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d hand_velocity_ = Eigen::Vector3d::Zero();
   MicronLimits limits_;
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero(), velocity_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();

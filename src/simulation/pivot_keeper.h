@@ -28,6 +28,9 @@ class PivotKeeper {
   /// Without power it stays as it is against the handle.
   void stepUnpowered(const Eigen::Vector3d& null, const Eigen::Vector3d& shaft);
 
+  /// As MicronModel::boundSpeed, so that the shaft's point keeps pace with the tip.
+  void boundSpeed(double speed, const Eigen::Vector3d& hand) { plant_.boundSpeed(speed, hand); }
+
   /// The truth: the shaft's point.
   const Eigen::Vector3d& point() const { return plant_.tip(); }
   const MicronReading& reading() const { return plant_.state(); }

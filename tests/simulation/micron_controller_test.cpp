@@ -219,6 +219,18 @@ TEST(MicronController, TheSpeedBoundOfACommandHolds)
   }
 }
 
+TEST(MicronController, BoundsTheMotionNotACommandThatLeadsASlowPlant)
+{
+  // What makes the plant answer faster than it is jitters by more in a millisecond than the tip may move in it.
+  Held micron(exact());
+  bool told = false;
+  for (int i = 0; i < 500; ++i) {
+    micron.deflect((i % 2 == 0 ? 1.0 : -1.0) * 1.5e-5 * kAcross, 0.01);  // 30 mm/s
+    told = micron.step().limits.speed || told;
+  }
+  EXPECT_FALSE(told);
+}
+
 TEST(MicronController, ReachesACylinderAboutTheNullAlongTheShaft)
 {
   const auto reached = [](const Eigen::Vector3d& wanted) {
