@@ -52,8 +52,8 @@ class Vision {
          const std::vector<std::string>& more, rlim_t file_limit = RLIM_INFINITY)
       : messages_(folder + "/stderr.txt")
   {
-    std::vector<std::string> words = {kProgram, "shm:" + ring,  "--out",   folder + "/out", "--lcm",
-                                      url,      "--no-overlay", "--quiet", "--timeout",     "10"};
+    std::vector<std::string> words = {kProgram, "shm:" + ring, "--out",        folder + "/out",
+                                      "--lcm",  url,           "--no-overlay", "--quiet"};
     words.insert(words.end(), more.begin(), more.end());
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
@@ -201,7 +201,7 @@ TEST_F(LiveVision, EndsWithALastPoseThatSaysWhyWhenTheRecordingCannotBeWritten)
   EXPECT_FALSE(heard_.back().pose.motion.tracked);
   EXPECT_EQ(vision.status(), 1);
   const std::string complaint = vision.complaint();
-  EXPECT_EQ(std::count(complaint.begin(), complaint.end(), '\n'), 2) << complaint;  // the first: messages are unsigned
+  EXPECT_EQ(std::count(complaint.begin(), complaint.end(), '\n'), 1) << complaint;
   EXPECT_NE(complaint.find("record.mkv"), std::string::npos) << complaint;
 }
 
