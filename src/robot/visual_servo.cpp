@@ -126,9 +126,10 @@ Reason VisualServo::lawOf(const Sight& sight, const vpMatrix& fJe, Eigen::Vector
   const Eigen::Matrix3d effect = sight.motion * toEigen(fJe);
   const bool finite = effect.allFinite() && sight.current.allFinite() && sight.desired.allFinite();
   if (!finite) return Reason::input_not_finite;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(effect);
-  const Eigen::Vector3d& sizes = svd.singularValues();
-  if (!(sizes[2] > options_.least_condition * sizes[0])) return Reason::servo_singular;
+  // Squares of the smallest and the largest effect that a velocity of 1 m/s has.
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(effect.transpose() * effect, Eigen::EigenvaluesOnly);
+  const double least = options_.least_condition * options_.least_condition * spread.eigenvalues()[2];
+  if (!(spread.eigenvalues()[0] > least)) return Reason::servo_singular;
   current_.set_s(sight.current.x(), sight.current.y(), sight.current.z());
   desired_.set_s(sight.desired.x(), sight.desired.y(), sight.desired.z());
   // An interaction matrix is of the camera's motion; here the features move.
