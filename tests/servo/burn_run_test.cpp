@@ -51,6 +51,11 @@ Change wish(void (*spoil)(messaging::OperatorWish&))
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
+double sine(double frequency, std::int64_t utime)
+{
+  return std::sin(2.0 * M_PI * frequency * 1e-6 * static_cast<double>(utime - support::kBurnStart));
+}
+
 std::vector<Opening> openings()
 {
   return {
@@ -86,6 +91,12 @@ std::vector<Opening> openings()
        }},
       {"tip no number", Reason::beam_misses, [](BurnInput& in) { in.tip.x() = kNaN; }},
       {"pose age no number", Reason::pose_stale, [](BurnInput& in) { in.pose_age = kNaN; }},
+      {"vibrating tip", Reason::tip_moves,
+       [](BurnInput& in) {
+         in.tip.x() += 15e-6 * sine(100.0, in.now);  // round in a circle: as fast at any time
+         in.tip.y() += 15e-6 * sine(100.0, in.now + 2500);
+       }},
+      {"swaying tip", Reason::tip_unsettled, [](BurnInput& in) { in.tip.x() += 100e-6 * sine(3.1, in.now); }},
       {"out of everyone's reach", Reason::reach_ends, [](BurnInput& in) { in.null.x() += 5e-3; }},
       {"late after the pose", Reason::pose_not_new, [](BurnInput& in) { in.since_pose = 4e-3; }},
   };
@@ -145,7 +156,8 @@ TEST(BurnRun, ARunningPulseIsStoppedInTheVeryCycleThatAnInterlockOpens)
 {
   for (const Opening& opening : openings()) {
     const bool only_to_begin = opening.reason == Reason::pose_surprising || opening.reason == Reason::retina_jumped ||
-                               opening.reason == Reason::pose_not_new || opening.name == "out of everyone's reach";
+                               opening.reason == Reason::pose_not_new || opening.reason == Reason::tip_moves ||
+                               opening.reason == Reason::tip_unsettled || opening.name == "out of everyone's reach";
     if (only_to_begin) continue;
     BurnScene scene(linePlan(1));
     beginPulse(scene);
@@ -337,6 +349,75 @@ TEST(BurnRun, AFrameThatTheTreatmentBeamOutshinesDoesNotStopIt)
     });
   }
   EXPECT_EQ(scene.run->ledger().at(0).fate, Fate::done);
+}
+
+TEST(BurnRun, ASpotThatWasSeenLongAgoIsNone)
+{
+  BurnScene scene(linePlan(1));
+  std::int64_t seen = 0;
+  Eigen::Vector2d spot = Eigen::Vector2d::Zero();
+  for (int i = 0; i < 1500; ++i) {
+    const Change silent = [&](BurnInput& in) {  // TOOL_TIP falls silent while poses go on
+      if (i < 100) {
+        seen = in.sight_utime;
+        spot = in.spot.value_or(spot);
+      }
+      in.sight_utime = seen;
+      in.spot = spot;
+    };
+    const Reason reason = scene.step(silent).reason;
+    EXPECT_TRUE(i <= 800 || reason == Reason::spot_off_target);
+  }
+  EXPECT_TRUE(scene.laser.pulses.empty());
+}
+
+TEST(BurnRun, AVesselThatAppearsUnderARunningPulseStopsIt)
+{
+  BurnScene scene(linePlan(1));
+  beginPulse(scene);
+  ASSERT_TRUE(scene.laser.state.emitting);
+  scene.prepared->verdicts[0] = {Reason::near_vessel, -10e-6};
+  EXPECT_NE(scene.step().command.action, LaserAction::fire);
+}
+
+TEST(BurnRun, TheBeamRestsOnItsTargetBeforeThePulse)
+{
+  for (const double dwell_ms : {100.0, 200.0, 400.0}) {
+    BurnRunOptions options;
+    options.dwell_ms = dwell_ms;
+    BurnScene scene(linePlan(1), options);
+    std::int64_t arrived = 0;
+    while (scene.laser.pulses.empty()) {
+      scene.step();
+      const bool off = (scene.spotNow() - Eigen::Vector2d(0.0, 100e-6)).norm() > 20e-6;
+      if (off || arrived == 0) arrived = scene.now;
+    }
+    EXPECT_GE(1e-3 * static_cast<double>(scene.now - arrived), dwell_ms - 20.0 - 2.0);  // the pulse ends the dwell
+    EXPECT_LE(1e-3 * static_cast<double>(scene.now - arrived), dwell_ms + 40.0);        // and a frame at most
+  }
+}
+
+TEST(BurnRun, WithNoRoomToRememberBurnsThereAreNone)
+{
+  fixtures::BurnPlan full = linePlan(messaging::kMostTargets);
+  for (fixtures::BurnTarget& target : full.targets) target.position_px.y() = 9000.0;
+  BurnScene scene(linePlan(1));
+  const auto wanted = scene.prepared;
+  for (int i = 0; i < 4; ++i) {  // 4 x 2048 places, as if burnt in runs before
+    full.um_per_px += 1e-6;
+    scene.prepared = support::preparedFor(full);
+    burn_plan_t message = *scene.prepared->proposed.message;
+    for (burn_target_t& target : message.target) target.state = burn_target_t::DONE;
+    scene.prepared->proposed.message = std::make_shared<const burn_plan_t>(message);
+    scene.wish.plan_hash = scene.prepared->proposed.hash;
+    scene.step();
+  }
+  scene.prepared = wanted;
+  scene.wish.plan_hash = wanted->proposed.hash;
+  Reason last = Reason::none;
+  for (int i = 0; i < 1500; ++i) last = scene.step().reason;
+  EXPECT_TRUE(scene.laser.pulses.empty());
+  EXPECT_EQ(last, Reason::burns_full);
 }
 
 TEST(BurnRun, TheGoalTravelsNoFasterThanAsked)
