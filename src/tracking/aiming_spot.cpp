@@ -19,6 +19,7 @@ constexpr double kRingSigmas = 3.0;      // where the spot's light has ended
 constexpr double kMostRise = 1000.0;     // a saturated spot's top is guessed from its flanks
 constexpr double kLeastNoise = 2.0;      // grey levels
 constexpr double kLeastSigma_px = 0.25;
+constexpr double kSettled_px = 0.03;  // a tenth of the error that is left
 
 struct Colour {
   float red, pale;
@@ -117,8 +118,7 @@ void AimingSpotFinder::gather(const cv::Mat& image, const ToolTip& tip, const Ve
 void AimingSpotFinder::report(const Spot& spot, const Equations& equations)
 {
   const double variance = std::max(kLeastNoise * kLeastNoise, equations.squares / static_cast<double>(count_));
-  const Matrix full = equations.normal.selfadjointView<Eigen::Lower>();
-  const Eigen::Matrix2d formal = full.inverse().block<2, 2>(1, 1);
+  const Eigen::Matrix2d formal = equations.normal.inverse().block<2, 2>(1, 1);
   const double floor = kLeastSigma_px * unit_;
   reach_ = kRingSigmas * spot.sigma;
   spot_.present = true;
@@ -144,7 +144,7 @@ AimingSpotFinder::Equations AimingSpotFinder::equationsAt(const Spot& spot, cons
     const double slope = spot.rise * light * inverse;
     Numbers row;
     row << light, slope * dx, slope * dy, spot.rise * light * q, 1.0, x, y;
-    equations.normal.selfadjointView<Eigen::Lower>().rankUpdate(row);
+    equations.normal += row.lazyProduct(row.transpose());
     equations.gradient += residual * row;
     equations.squares += residual * residual;
   }
@@ -162,7 +162,7 @@ std::optional<AimingSpotFinder::Spot> AimingSpotFinder::fit(const Vector2d& plac
   for (int step = 0; step < kSteps; ++step) {
     Equations equations = equationsAt(spot, place);
     equations.normal.diagonal() *= 1.0 + 1e-3;
-    const Numbers change = equations.normal.selfadjointView<Eigen::Lower>().ldlt().solve(equations.gradient);
+    const Numbers change = equations.normal.ldlt().solve(equations.gradient);
     if (!change.allFinite()) return {};
     spot.rise += change[0];
     spot.centre += change.segment<2>(1).cwiseMax(-usual).cwiseMin(usual);
@@ -171,6 +171,7 @@ std::optional<AimingSpotFinder::Spot> AimingSpotFinder::fit(const Vector2d& plac
     const bool possible = spot.rise > 0.0 && spot.rise < kMostRise && (spot.centre - place).norm() < 2.5 * usual &&
                           spot.sigma > usual / 3.0 && spot.sigma < 2.0 * usual;
     if (!possible) return {};
+    if (change.segment<2>(1).norm() < kSettled_px * unit_) break;
   }
   return spot;
 }

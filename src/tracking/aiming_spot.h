@@ -68,7 +68,7 @@ class AimingSpotFinder {
   using Numbers = Eigen::Matrix<double, Spot::kNumbers, 1>;
   using Matrix = Eigen::Matrix<double, Spot::kNumbers, Spot::kNumbers>;
   struct Equations {
-    Matrix normal = Matrix::Zero();  // lower half
+    Matrix normal = Matrix::Zero();
     Numbers gradient = Numbers::Zero();
     double squares = 0.0;
   };
