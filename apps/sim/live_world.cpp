@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t kPeriod_us = 1000;
 constexpr std::int64_t kMostAtOnce = 200;  // of the milliseconds that have passed; a longer pause is one of the world
-constexpr std::int64_t kSettling_steps = 2000;  // after a change of hands nothing counts
+constexpr std::int64_t kSettling_steps = 4000;  // after a change of hands nothing counts; as in the loop study
 
 }  // namespace
 
@@ -40,6 +40,7 @@ LiveWorld::LiveWorld(const Setting& setting, messaging::Link& link, FrameFeed& f
       link_(link),
       feed_(feed),
       statuses_(link),
+      wishes_(link),
       hardware_(
           setting.hardware, [this](double t_s) { return surgeonTask(t_s); }, link, setting.seed)
 {
@@ -87,8 +88,11 @@ void LiveWorld::injectFaults()
 bool LiveWorld::isGuided() const
 {
   const messaging::ServoStatus* status = statuses_.latest();
-  return status != nullptr && hardware_.micronState().follows_command &&
-         (status->state == messaging::ServoState::assist || status->state == messaging::ServoState::laser);
+  const messaging::OperatorWish* wish = wishes_.latest();
+  if (status == nullptr || wish == nullptr || !hardware_.micronState().follows_command) return false;
+  const messaging::FixtureKind kind = wish->fixture.kind;
+  const bool has_goal = kind == messaging::FixtureKind::point || kind == messaging::FixtureKind::vessel;
+  return status->state == messaging::ServoState::laser || (status->state == messaging::ServoState::assist && has_goal);
 }
 
 void LiveWorld::judge()

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "eyeslam/messaging/link.h"
+#include "eyeslam/messaging/operator_messages.h"
 #include "eyeslam/messaging/servo_messages.h"
 #include "eyeslam/messaging/subscription.h"
 #include "eyeslam/simulation/hardware.h"
@@ -36,7 +37,7 @@ class LiveWorld {
     bool foot_switch = false;
     std::uint64_t seed = 1;
   };
-  /// The tip's error while the hand was alone, and while the servo guided.
+  /// The tip's error while the hand was alone, and while the servo guided it to a point, along a vessel or to targets.
   struct Scores {
     TipErrors alone;
     TipErrors guided;
@@ -62,6 +63,7 @@ class LiveWorld {
   messaging::Link& link_;
   FrameFeed& feed_;
   messaging::Subscription<servo_status_t> statuses_;
+  messaging::Subscription<operator_t> wishes_;
   simulation::Hardware hardware_;
   std::size_t faults_done_ = 0;
   std::int64_t steps_ = 0;

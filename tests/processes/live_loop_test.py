@@ -9,6 +9,8 @@ SIZE = (400, 304)
 
 
 class Loop(LiveCase):
+    servo_settings = ()
+
     def start_all(self, *sim_arguments):
         """Key and all: what a bench would have."""
         with open(self.path("micron.key"), "w") as file:
@@ -19,7 +21,7 @@ class Loop(LiveCase):
         self.sim = self.start("eyeslam-sim", "--live", *link, "--shm", self.shm, "--size", size, *sim_arguments)
         self.sim.expect("live:", 60)
         self.servo = self.start("eyeslam-servo", *link, "--registration", self.path("camera.json"), "--set",
-                                f"image_width_px={SIZE[0]}", "--set", f"image_height_px={SIZE[1]}")
+                                f"image_width_px={SIZE[0]}", "--set", f"image_height_px={SIZE[1]}", *self.servo_settings)
         self.servo.expect("running")
         self.track = self.start("eyeslam-track", f"shm:{self.shm}", "--out", self.path("track"), "--no-overlay", *link)
         self.view = self.start("eyeslam-view", "--console", *link, "--size", size)
@@ -32,6 +34,7 @@ class Loop(LiveCase):
         self.view.expect("servo: assist", 60)
         self.servo.expect("calibrated: ", 60)
         self.view.tell("await registration")
+        self.view.tell("ready")  # from Assist, a fixture that cannot guide at once would be a reason to hold
 
     def figures(self, what):
         found = self.sim.expect(rf"tip error {what}: (\d+) um RMS, (\d+) median, (\d+) p95")
@@ -44,14 +47,15 @@ class Loop(LiveCase):
         self.calibrate()
         self.view.tell("fixture point {} {}".format(*place.groups()))
         self.view.tell("assist")
+        self.view.tell("await assist")
         self.view.tell("wait 15")
         self.view.tell("quit")
         self.view.expect("standby; the console ends", 90)
         self.servo.expect("^servo: standby", since=len(self.servo.lines) - 2)
         self.assertEqual(self.view.process.wait(10), 0, self.view.text())
         self.assertEqual(self.servo.end(), 0, self.servo.text())
-        self.assertEqual(self.sim.end(), 0, self.sim.text())
         self.assertEqual(self.track.end(), 0, self.track.text())
+        self.assertEqual(self.sim.end(), 0, self.sim.text())
         alone, guided = self.figures("by hand alone"), self.figures("guided")
         print(f"\nalone {alone} um, guided {guided} um (RMS, median, p95)")
         # In lock step it holds within 20 um RMS; a shared computer leaves frames out and cycles late.

@@ -86,7 +86,7 @@ class Vision {
     map_.width = map_.height = 80;
     map_.probability.assign(6400, 0);
     map_.seen.assign(6400, 100);
-    map_.calibre.assign(6400, 0);
+    map_.calibre_px.assign(6400, 0);
     for (std::size_t x = 4; x < 76; ++x) {
       for (std::size_t y = 38; y < 42; ++y) map_.probability[80 * y + x] = 255;
     }
