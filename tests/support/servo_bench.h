@@ -16,6 +16,7 @@
 #include "eyeslam/messaging/servo_messages.h"
 #include "eyeslam/messaging/subscription.h"
 #include "eyeslam/servo/servo.h"
+#include "support/burn_scene.h"
 #include "support/encoded_message.h"
 
 namespace eyeslam::support {
@@ -39,10 +40,12 @@ class ServoBench {
         lasers_(link),
         statuses_(link, [this](const messaging::ServoStatus& status,
                                const messaging::MessageHeader&) { said.push_back(status); }),
+        laser_commands_(link),
         servo(std::make_unique<servo::Servo>(options, link))
   {
     said.reserve(100'000);
     wish.map_id = kMap;
+    laser.state.foot_switch = laser.state.armed = laser.state.interlock_closed = true;
   }
 
   static Eigen::Vector2d centre_px() { return {399.5, 303.5}; }
@@ -76,9 +79,12 @@ class ServoBench {
     now = {kStart_us + 1000 * steps, kStart_us + 1000 * steps};
     null = hand ? hand(time()) : Eigen::Vector3d(0.0, 0.0, -1e-3);
     if (controller_speaks) speak();
+    if (laser_speaks && steps % 10 == 0) lasers_.publish(laser.state, now.utime, now.utime);
     if (operator_speaks && (steps % 50 == 1 || wishes_)) say();
     if (vision_speaks && steps % 33 == 0) see();
     link.drain(now);
+    const messaging::LaserCommand* light = laser_commands_.inForce(now.monotonic);
+    laser.step(light ? *light : messaging::LaserCommand(), 1e-3);
     if (before_cycle) before_cycle();
     servo->cycle(now, {});
     if (after_cycle) after_cycle();
@@ -142,7 +148,8 @@ class ServoBench {
   void put(const std::string& channel, const Bytes& bytes) { link.send(channel, bytes.data(), bytes.size()); }
 
   messaging::Link link;
-  bool controller_speaks = true, operator_speaks = true, vision_speaks = true;
+  bool controller_speaks = true, operator_speaks = true, vision_speaks = true, laser_speaks = true;
+  SimpleLaser laser;
   std::function<Eigen::Vector3d(double)> hand;    ///< its null; m
   std::function<Eigen::Vector2d(double)> retina;  ///< how far it has moved; m
   std::function<void()> before_cycle, after_cycle;
@@ -192,6 +199,8 @@ class ServoBench {
     sight.tip.present = true;
     sight.tip.position_px = pixelOf(seen_tip_);
     sight.tip.covariance = Eigen::Matrix2d::Identity();
+    // The beam goes straight down.
+    sight.spot = laser.state.aiming ? sight.tip : messaging::ImagePoint();
     tips_.publish(sight, pose.frame.utime, now.utime);
   }
   // The tip is there within the cycle.
@@ -212,6 +221,7 @@ class ServoBench {
   messaging::Publisher<tool_tip_t> tips_;
   messaging::Publisher<laser_state_t> lasers_;
   messaging::Subscription<servo_status_t> statuses_;
+  messaging::Subscription<laser_command_t> laser_commands_;
   Eigen::Vector3d seen_tip_ = Eigen::Vector3d::Zero();
   bool tip_known_ = false;
   bool wishes_ = false;
