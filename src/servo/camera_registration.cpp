@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kPerMillimetre = 1e3;
 constexpr double kDriftShare = 0.05;  // of the newest innovation in the mean: some twenty samples
+constexpr double kMostDrift = 2.0;    // times the limit, that a single sample counts for
 constexpr int kPasses = 12;           // of reweighting in fit()
 constexpr double kSmallestInformation = 1e-9;
 
@@ -67,7 +68,7 @@ void CameraRegistration::forget()
 {
   information_.setZero();
   moments_.setZero();
-  drift_.setZero();
+  drift_um_.setZero();
   squares_ = weights_ = 0.0;
   result_ = {};
 }
@@ -101,6 +102,16 @@ Reason CameraRegistration::fit(const std::vector<TipSample>& samples)
   return result_.reason = verdict();
 }
 
+// It shows in samples that are refused as well: they all lie on the same side. A single wrong one counts little.
+void CameraRegistration::noteDrift(const Eigen::Vector2d& innovation_px)
+{
+  const double px_per_um = 1e-6 * result_.image_T_base.leftCols<3>().norm() / std::sqrt(2.0);
+  if (!(px_per_um > 0.0)) return;
+  const Eigen::Vector2d um = innovation_px / px_per_um;
+  const double length = std::max(1.0, um.norm() / (kMostDrift * options_.drift_um));
+  drift_um_ += kDriftShare * (um / length - drift_um_);
+}
+
 Reason CameraRegistration::add(const TipSample& sample)
 {
   const auto refuse = [&](Reason why) {
@@ -114,11 +125,9 @@ Reason CameraRegistration::add(const TipSample& sample)
   if (static_cast<double>(result_.samples) >= options_.least_samples) {
     const double noise = std::max(1.0, result_.residual_px / sample.sigma_px);
     const double sigma = std::hypot(noise * sample.sigma_px, result_.sigmaOf(sample.tip));
-    const Eigen::Vector2d innovation = (sample.image_px - result_.toImage(sample.tip)) / sigma;
-    // A drift shows in samples that are refused as well: they all lie on the same side.
-    const double length = std::max(1.0, innovation.norm() / options_.outlier_sigmas);
-    drift_ += kDriftShare * (innovation / length - drift_);
-    if (length > 1.0) {
+    const Eigen::Vector2d innovation = sample.image_px - result_.toImage(sample.tip);
+    noteDrift(innovation);
+    if (innovation.norm() > options_.outlier_sigmas * sigma) {
       result_.reason = verdict();
       return refuse(Reason::outlier);
     }
@@ -238,9 +247,7 @@ Reason CameraRegistration::verdict() const
   constexpr double k95 = 2.4477;  // of a planar normal error
   if (k95 * result_.sigmaOf(last_tip_) / px_per_m * 1e6 > options_.worst_error_um)
     return Reason::registration_uncertain;
-  // Variance of an exponential mean of unit samples.
-  const double drift_sigma = std::sqrt(kDriftShare / (2.0 - kDriftShare));
-  if (drift_.norm() > options_.drift_sigmas * drift_sigma) return Reason::registration_drift;
+  if (drift_um_.norm() > options_.drift_um) return Reason::registration_drift;
   if (expected_um_per_px_) {
     const std::optional<double> found = result_.umPerPx(expected_plane_);
     if (!found || std::abs(*found / *expected_um_per_px_ - 1.0) > options_.scale_tolerance)

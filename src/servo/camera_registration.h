@@ -19,7 +19,7 @@ struct CameraRegistrationOptions {
   double least_samples = 20.0;
   double worst_residual_px = 4.0;
   double worst_error_um = 20.0;
-  double drift_sigmas = 6.0;
+  double drift_um = 45.0;
   double scale_tolerance = 0.03;
 
   template <class Self, class Visitor>
@@ -43,8 +43,10 @@ struct CameraRegistrationOptions {
     visitor.field(
         "worst_error_um", self.worst_error_um, Range{1.0, 1000.0}, "um",
         "95 % error within a mm of the tip that may still be servoed; source: the settle gate, loop study 2.8");
-    visitor.field("drift_sigmas", self.drift_sigmas, Range{2.0, 50.0}, "sigma",
-                  "a lasting offset of the newest samples beyond it is a drift; source: 1 in 10^8 by chance");
+    visitor.field(
+        "drift_um", self.drift_um, Range{5.0, 1000.0}, "um",
+        "a lasting offset of the newest samples beyond it is a drift; source: the picture wanders by 15 um RMS "
+        "of itself, which the trim takes out, loop study 1");
     visitor.field("scale_tolerance", self.scale_tolerance, Range{0.001, 0.5}, "",
                   "largest share by which a declared um per px may differ; source: contracts 1, 3 %");
   }
@@ -113,6 +115,7 @@ class CameraRegistration {
 
   Eigen::Matrix4d toOwn() const;
   Row regressor(const Eigen::Vector3d& tip) const;
+  void noteDrift(const Eigen::Vector2d& innovation_px);
   void absorb(const TipSample& sample, double weight);
   void solve();
   retina::Reason verdict() const;
@@ -129,7 +132,7 @@ class CameraRegistration {
   Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();  // of the tips, mm about the origin
   double spread_ = 0.0;                             // mm, their standard deviation across the narrower way
   Eigen::Vector3d last_tip_ = Eigen::Vector3d::Zero();
-  Eigen::Vector2d drift_ = Eigen::Vector2d::Zero();  // mean of the newest innovations, sigmas
+  Eigen::Vector2d drift_um_ = Eigen::Vector2d::Zero();  // mean of the newest innovations, on the retina
   std::optional<double> expected_um_per_px_;
   RetinaPlane expected_plane_;
   Registration result_;

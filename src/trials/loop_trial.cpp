@@ -14,9 +14,6 @@ namespace {
 
 constexpr double kPeriod_s = 1e-3;
 constexpr std::int64_t kStart_us = 1'700'000'000'000'000;  // any that is not 0 (contracts, section 1)
-constexpr double kBack_m = 50e-6;                          // issue: under 50 um after a saccade
-constexpr double kLookedAt_s = 0.3;
-constexpr double kCalm_s = 0.15;  // loop study, section 4: later than 150 ms after fast motion
 
 std::int64_t utimeOf(double t_s) { return kStart_us + std::llround(1e6 * t_s); }
 
@@ -40,7 +37,7 @@ class Bench {
         micron_(setting.micron, seed),
         tracker_(setting.camera, setting.tracker, setting.registration, seed, Eigen::Vector2d::Zero()),
         cycle_(setting.servo, placement(setting, seed)),
-        recovery_(kBack_m, kLookedAt_s)
+        judge_(setting.settling_s)
   {
     cycle_.setLead(micron_.lead());
   }
@@ -49,8 +46,7 @@ class Bench {
   {
     const auto steps = std::llround((setting_.settling_s + setting_.duration_s) / kPeriod_s);
     for (std::int64_t i = 1; i <= steps; ++i) step(static_cast<double>(i) * kPeriod_s);
-    result_.jumps = recovery_.jumps();
-    result_.saturated_fraction /= static_cast<double>(std::max<std::size_t>(result_.errors_m.size(), 1));
+    static_cast<TipErrors&>(result_) = judge_.result();
     result_.refusals = cycle_.refusals();
     return std::move(result_);
   }
@@ -106,7 +102,7 @@ class Bench {
     if (const std::optional<TrackedFrame> frame = tracker_.ready(t_s)) {
       const std::int64_t utime = utimeOf(frame->mid_exposure_s);
       if (frame->tracked && !setting_.true_poses) input.pose = servo::SeenPose{utime, frame->view_T_retina, 0.0, 0.0};
-      if (!frame->tracked || frame->outlier) recovery_.spoilt(frame->mid_exposure_s);
+      if (!frame->tracked || frame->outlier) judge_.spoilt(frame->mid_exposure_s);
       input.tip = servo::SeenTip{utime, tracker_.exposure(), frame->tip, 0.0};
     }
     return input;
@@ -117,14 +113,7 @@ class Bench {
     const Eigen::Vector3d tip_retina = eye.world_T_retina.toRetina(tip());
     const double error = task_.error(tip_retina, t_s);
     const simulation::EyeJerks& jerks = retina_.jerks();
-    if (jerks.inProgress()) calm_from_s_ = t_s + kCalm_s;
-    if (t_s <= setting_.settling_s) return;
-    const Eigen::Vector2d jumped = jerks.ownWay() + jerks.toolWay();
-    recovery_.step(t_s, jerks.inProgress(), jumped.x(), jumped.y(), error);
-    result_.errors_m.push_back(error);
-    result_.calm.push_back(t_s >= calm_from_s_);
-    result_.path.push_back(tip_retina);
-    if (micron_.isSaturated()) result_.saturated_fraction += 1.0;
+    judge_.step({t_s, tip_retina, error, jerks.inProgress(), jerks.ownWay() + jerks.toolWay(), micron_.isSaturated()});
   }
 
   const LoopTrialSetting& setting_;
@@ -134,8 +123,7 @@ class Bench {
   simulation::MicronModel micron_;
   simulation::TrackerModel tracker_;
   ServoCycle cycle_;
-  JumpRecovery recovery_;
-  double calm_from_s_ = 0.0;
+  TipJudge judge_;
   Eigen::Vector3d goal_ = Eigen::Vector3d::Zero();
   std::int64_t goals_ = 0;
   LoopResult result_;

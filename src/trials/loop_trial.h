@@ -14,7 +14,7 @@
 #include "eyeslam/simulation/retina_motion.h"
 #include "eyeslam/simulation/traced_path.h"
 #include "eyeslam/simulation/tracker_model.h"
-#include "eyeslam/trials/jump_recovery.h"
+#include "eyeslam/trials/tip_judge.h"
 
 namespace eyeslam::trials {
 
@@ -48,12 +48,7 @@ struct LoopTask {
 /// Hold one place of the retina.
 LoopTask holdTask(const Eigen::Vector3d& place);
 
-struct LoopResult {
-  std::vector<double> errors_m;       ///< a sample a millisecond
-  std::vector<bool> calm;             ///< the same samples: not within 150 ms of a jerk or saccade
-  std::vector<Jump> jumps;            ///< jerks and saccades
-  std::vector<Eigen::Vector3d> path;  ///< of the tip, retina frame, m
-  double saturated_fraction = 0.0;
+struct LoopResult : TipErrors {
   double highest_goal_speed = 0.0;  ///< m/s
   servo::Refusals refusals;
 };

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eyeslam/trials/lock_step_vision.h"
+
+#include <cmath>
+
+namespace eyeslam::trials {
+
+namespace {
+
+constexpr std::uint64_t kStream = 61;  // of the seed's random numbers
+
+}  // namespace
+
+LockStepVision::LockStepVision(const LockStepVisionOptions& options, const simulation::EyeCameraOptions& camera,
+                               const simulation::Fundus& fundus, messaging::Link& link, std::uint64_t seed)
+    : latency_low_(1e3 * options.latency_low_ms),
+      latency_high_(1e3 * options.latency_high_ms),
+      camera_(camera, fundus, seed),
+      tracker_(options.tracker),
+      publisher_(link, 0.0, camera.fps),
+      random_(seed, kStream)
+{}
+
+const TrackedView& LockStepVision::look(const simulation::FrameDue& due)
+{
+  const simulation::RenderedFrame frame = camera_.render(due);
+  image_ = frame.image;
+  const tracking::TrackResult& result = live_.track(tracker_, image_);
+  const auto latency = std::llround(random_.uniform(latency_low_, latency_high_));
+  waiting_.push_back({due.utime + latency,
+                      {due.utime, due.frame, due.exposure},
+                      result,
+                      tracker_.getToolTip(),
+                      tracking::AimingSpot()});
+  newest_ = {due.t_s, result.tracked, result.reason, result.map_T_frame, frame.map_T_frame};
+  tracker_.updateMap();
+  return newest_;
+}
+
+void LockStepVision::step(const messaging::ReceiveTime& now)
+{
+  while (!waiting_.empty() && waiting_.front().ready <= now.utime) {
+    const Waiting& ready = waiting_.front();
+    publisher_.publishPose(ready.stamp, ready.result, tracker_.getVesselMap().version, now.utime);
+    publisher_.publishInstrument(ready.stamp, ready.tip, ready.spot, now.utime);
+    publisher_.publishTiles(ready.stamp, tracker_.getVesselMap(), now.utime);
+    waiting_.pop_front();
+  }
+}
+
+}  // namespace eyeslam::trials
