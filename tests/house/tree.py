@@ -7,7 +7,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDERS = ("apps", "cmake", "docs", "lcmtypes", "scripts", "scenarios", "src", "tests", ".ci")
 ROOT_FILES = ("CMakeLists.txt", "CMakePresets.json", "README.md", "packages.txt", "demo", "test", ".clang-format",
               ".clang-tidy")
-PICTURES = {".png", ".jpg", ".gif", ".svg"}
+NOT_TEXT = {".png", ".jpg", ".gif", ".svg", ".lcmlog"}
 
 
 def files(*endings, folders=FOLDERS):
@@ -16,7 +16,7 @@ def files(*endings, folders=FOLDERS):
     for folder in folders:
         found += (ROOT / folder).rglob("*")
     return sorted(path.relative_to(ROOT) for path in found
-                  if path.is_file() and "__pycache__" not in path.parts and path.suffix not in PICTURES
+                  if path.is_file() and "__pycache__" not in path.parts and path.suffix not in NOT_TEXT
                   and (not endings or path.suffix in endings))
 
 
