@@ -288,6 +288,20 @@ TEST_F(ServoFaults, AFixtureOfAnotherMapIsHold)
   expectNow(State::hold, Reason::map_changed);
 }
 
+TEST_F(ServoFaults, AnotherMapWithAnotherOriginIsNoJump)
+{
+  bench.ask([](OperatorWish& w) {
+    w.fixture = {};
+    w.fixture.kind = FixtureKind::filter;
+  });
+  bench.run(100);
+  bench.spoil_pose = [](retina_pose_t& pose) {
+    pose.map_id = 8;
+    pose.x_px += 600.0;  // 3 mm
+  };
+  expectNothing(500);
+}
+
 TEST_F(ServoFaults, AVesselThatNobodyKnowsIsHold)
 {
   bench.ask([](OperatorWish& w) {
