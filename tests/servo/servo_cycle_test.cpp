@@ -175,6 +175,16 @@ TEST(ServoCycle, AfterARestItBeginsWhereTheTipIs)
   const ServoCommand& command = cycle.command({300e-6, 0.0, 0.0});
   EXPECT_LT((command.goal - input.state->tip).norm(), 10e-6);
   EXPECT_LT((command.deflection - input.state->tip).norm(), 40e-6);
+  EXPECT_LT((command.position - input.state->tip).norm(), 200e-6);  // what the plant needs to begin, not its past
+}
+
+// 5 % of the way after 20 of 150 ms, where the limits alone would let it go 360 um.
+TEST(ServoCycle, AGoalThatIsLostFades)
+{
+  ServoCycle cycle({}, {});
+  runQuiet(cycle, 0, 500, {500e-6, 0.0, 0.0});
+  runQuiet(cycle, 500, 520, Eigen::Vector3d::Constant(std::nan("")));
+  EXPECT_GT(cycle.last().goal.x(), 470e-6);
 }
 
 // Anything may come in: out of order, NaN, from the future, far away. What goes out stays finite and within the limits.
