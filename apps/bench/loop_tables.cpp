@@ -58,7 +58,7 @@ class Line {
     }
     all_.push_back(trials::errorFigures(std::move(errors)));
     calm_.push_back(trials::errorFigures(std::move(calm)));
-    trials::countRecoveries(setting_, result, recoveries_);
+    trials::countRecoveries(trials::recoveryTiming(setting_), result.jumps, recoveries_);
   }
 
   LoopTrialSetting setting_;

@@ -7,6 +7,7 @@ namespace eyeslam::apps {
 struct LoopInputs {
   int seeds = 20;
   double seconds = 20.0;  ///< that count, of each seed
+  bool rendered = false;  ///< on rendered frames with the real tracker; minutes instead of seconds
   bool quiet = false;
 };
 
