@@ -9,8 +9,8 @@
 
 #include "eyeslam/files/file_error.h"
 #include "eyeslam/files/plan_file.h"
-#include "support/temporary_folder.h"
 #include "link/status_text.h"
+#include "support/temporary_folder.h"
 
 namespace eyeslam::apps {
 namespace {
