@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The whole loop over LCM: simulator, tracker, servo and console, each a process. live_loop_test.py PROGRAM_FOLDER."""
 import os
+import time
 import unittest
 
 from live_case import LiveCase
@@ -36,6 +37,17 @@ class Loop(LiveCase):
         self.view.tell("await registration")
         self.view.tell("ready")  # from Assist, a fixture that cannot guide at once would be a reason to hold
 
+    def hold(self, seconds):
+        """As a human would: where the computer had no time for a quarter of a second, the servo holds, and he re-arms."""
+        end = time.monotonic() + seconds
+        seen = len(self.view.lines)
+        while time.monotonic() < end:
+            time.sleep(0.1)
+            news, seen = self.view.lines[seen:], len(self.view.lines)
+            if any("servo: hold: pose_stale" in line for line in news):
+                self.view.tell("rearm")
+                self.view.tell("assist")
+
     def figures(self, what):
         found = self.sim.expect(rf"tip error {what}: (\d+) um RMS, (\d+) median, (\d+) p95")
         return [int(figure) for figure in found.groups()]
@@ -46,9 +58,10 @@ class Loop(LiveCase):
         self.view.tell("wait 6")  # the hand alone
         self.calibrate()
         self.view.tell("fixture point {} {}".format(*place.groups()))
+        before = len(self.view.lines)
         self.view.tell("assist")
-        self.view.tell("await assist")
-        self.view.tell("wait 15")
+        self.view.expect("servo: assist", 20, since=before)
+        self.hold(15)
         self.view.tell("quit")
         self.view.expect("standby; the console ends", 90)
         self.servo.expect("^servo: standby", since=len(self.servo.lines) - 2)
