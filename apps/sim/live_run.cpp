@@ -12,6 +12,7 @@
 #include "command_line/program.h"
 #include "eyeslam/configuration/listing.h"
 #include "eyeslam/files/file_error.h"
+#include "eyeslam/retina/reason.h"
 #include "eyeslam/simulation/retina_motion_options.h"
 #include "real_time/scheduling.h"
 
@@ -79,7 +80,8 @@ LiveRun::LiveRun(const SimArguments& arguments)
       link_(openLink(arguments.link, newSession())),
       patient_link_(openLink(arguments.link, link_.session())),
       mark_(patient_link_, "eyeslam-sim", recorded(setting_.hardware)),
-      poses_(patient_link_)
+      poses_(patient_link_),
+      states_(patient_link_)
 {
   const std::string notice = unsignedNotice(arguments.link);
   if (!arguments.quiet && !notice.empty()) fmt::print(stderr, "eyeslam-sim: {}\n", notice);
@@ -107,7 +109,23 @@ void LiveRun::watch()
 {
   usleep(kTurn_us);
   patient_link_.drain(receiveTime());
-  if (!arguments_.quiet) sayWhereTheTaskIs();
+  if (arguments_.quiet) return;
+  sayController();
+  sayWhereTheTaskIs();
+}
+
+// Where the servo itself is gone, the reason stands here.
+void LiveRun::sayController()
+{
+  const messaging::MicronState* state = states_.latest();
+  if (state == nullptr) return;
+  std::string said = state->follows_command ? "follows the servo" : "moves the tip by its own filter";
+  if (!state->follows_command && state->reason != retina::Reason::none) {
+    said += fmt::format(": {}", retina::word(state->reason));
+  }
+  if (said == last_controller_) return;
+  say("controller: " + said);
+  last_controller_ = std::move(said);
 }
 
 // A surgeon would point at the place in the picture. Here the place is known in the truth's map; one frame of which

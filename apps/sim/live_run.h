@@ -2,8 +2,10 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "command_line/interruption.h"
+#include "eyeslam/messaging/micron_messages.h"
 #include "eyeslam/messaging/retina_messages.h"
 #include "eyeslam/messaging/subscription.h"
 #include "real_time/real_time_loop.h"
@@ -24,6 +26,7 @@ class LiveRun {
 
  private:
   void watch();
+  void sayController();
   void sayWhereTheTaskIs();
   void sayScores() const;
 
@@ -36,6 +39,8 @@ class LiveRun {
   messaging::Link patient_link_;  // of this one: the map's poses come with frames, and printing takes its time
   RunMark mark_;
   messaging::Subscription<retina_pose_t> poses_;
+  messaging::Subscription<micron_state_t> states_;
+  std::string last_controller_;
   std::optional<LiveWorld> world_;
   std::int64_t place_of_map_ = 0;  // whose place was told
 };

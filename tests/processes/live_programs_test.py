@@ -168,6 +168,36 @@ class Simulator(LiveCase):
         self.assertEqual(sim.end(), 0, sim.text())
         sim.expect("frames: ")
 
+    def ready(self):
+        servo = self.start("eyeslam-servo", "--lcm", self.url)
+        sim = self.start("eyeslam-sim", "--live", "--lcm", self.url, "--shm", self.shm, "--size", "200x152")
+        view = self.start("eyeslam-view", "--console", "--lcm", self.url)
+        sim.expect("live:")
+        servo.expect("standby")
+        view.tell("ready")
+        view.expect("servo: ready")
+        sim.expect("controller: follows the servo")
+        return servo, sim, view
+
+    def test_tells_why_the_controller_moves_the_tip_when_the_servo_was_killed(self):
+        servo, sim, _ = self.ready()
+        servo.end(signal.SIGKILL)
+        sim.expect("controller: moves the tip by its own filter: expired")
+
+    def test_a_second_servo_is_in_fault_before_it_commands_anything(self):
+        self.ready()
+        self.start("eyeslam-servo", "--lcm", self.url).expect("servo: fault: ")
+
+    def test_a_stop_holds_until_a_human_rearms(self):
+        servo, sim, view = self.ready()
+        view.tell("stop")
+        servo.expect("servo: hold: stopped")
+        sim.expect("controller: moves the tip by its own filter")
+        view.tell("rearm")
+        before = len(servo.lines)
+        servo.expect("servo: ready", since=max(before - 1, 0))
+        self.assertEqual(servo.end(), 0, servo.text())
+
     def test_drives_the_servo_to_ready_and_its_faults_out_of_it(self):
         servo = self.start("eyeslam-servo", "--lcm", self.url)
         sim = self.start("eyeslam-sim", "--live", "--lcm", self.url, "--shm", self.shm, "--size", "200x152", "--fault",

@@ -9,6 +9,7 @@
 
 #include "eyeslam/files/file_error.h"
 #include "eyeslam/files/plan_file.h"
+#include "eyeslam/messaging/record_messages.h"
 #include "link/status_text.h"
 #include "support/temporary_folder.h"
 
