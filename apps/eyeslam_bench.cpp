@@ -10,6 +10,7 @@
 #include "bench/loop_tables.h"
 #include "bench/method_study.h"
 #include "bench/plan_tables.h"
+#include "bench/rendered_loop_tables.h"
 #include "command_line/program.h"
 #include "command_line/progress.h"
 #include "eyeslam/baselines/method.h"
@@ -153,6 +154,7 @@ CLI::App* addLoopCommand(CLI::App& app, LoopInputs& inputs)
   CLI::App* command = app.add_subcommand("loop", "the 1 kHz loop in lock-step trials, beside the loop study");
   command->add_option("--seeds", inputs.seeds, "trials a line")->check(CLI::Range(1, 10000));
   command->add_option("--seconds", inputs.seconds, "that count, of each")->check(CLI::Range(1.0, 3600.0));
+  command->add_flag("--rendered", inputs.rendered, "the real tracker on rendered frames instead of assumed noise");
   command->add_flag("--quiet", inputs.quiet, "no progress on standard error");
   return command;
 }
@@ -186,7 +188,7 @@ std::function<void()> setUp(CLI::App& app, BenchArguments& arguments, PlanInputs
     if (by_speed->parsed()) return speed(arguments);
     if (by_line->parsed()) return printCenterlines(lines);
     if (by_plan->parsed()) return printPlanTables(plans);
-    if (by_loop->parsed()) return printLoopTables(loops);
+    if (by_loop->parsed()) return loops.rendered ? printRenderedLoopTables(loops) : printLoopTables(loops);
     if (by_process->parsed()) return printLiveTable(live);
     detect(arguments);
   };

@@ -112,6 +112,7 @@ Reason Guidance::drawZones(const OperatorWish& wish) noexcept
 
 Reason Guidance::serve(const OperatorWish& wish, const RetinaFrame& frame) noexcept
 {
+  if (frame.view != frame_.view) fixtures_.forget();
   frame_ = frame;
   wanted_ = wish.fixture;
   const bool free = wanted_.kind == FixtureKind::none && wish.zones == 0;

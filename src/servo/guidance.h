@@ -39,6 +39,7 @@ struct GuidanceOptions {
 struct RetinaFrame {
   std::int64_t map_id = 0;  ///< of the newest pose
   double um_per_px = 0.0;   ///< nominal, of map px: makes metres of them; 0 = unknown
+  std::int64_t view = 0;    ///< grows when the view was placed anew: places from before are none
 };
 
 /// The human's choice of a fixture, put into force: makes virtual fixtures of OPERATOR and the newest preparation, and

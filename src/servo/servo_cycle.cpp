@@ -188,9 +188,18 @@ const ServoCommand& ServoCycle::commandTip(const Eigen::Vector3d& goal, double s
   return steer(goal, share, has_state ? Reason::none : outlook_.reason);
 }
 
+// Somewhat beyond the reach the tip waits at its end; what is farther is no place that anybody meant.
+Reason ServoCycle::whyNotThere(const Eigen::Vector3d& wanted) const noexcept
+{
+  constexpr double kFarthest = 2.0;  // reaches
+  if (!wanted.allFinite()) return Reason::goal_not_finite;
+  const double farthest = kFarthest * options_.limits.reach_mm * kMilli;
+  return (wanted - outlook_.hand).norm() > farthest ? Reason::out_of_reach : Reason::none;
+}
+
 const ServoCommand& ServoCycle::steer(const Eigen::Vector3d& wanted, double share, Reason why) noexcept
 {
-  command_.reason = why == Reason::none && !wanted.allFinite() ? Reason::goal_not_finite : why;
+  command_.reason = why != Reason::none ? why : whyNotThere(wanted);
   refusals_.count(command_.reason);
   if (command_.reason == Reason::no_state || command_.reason == Reason::state_stale) return command_;
   if (!started_) begin();

@@ -124,6 +124,7 @@ class ServoCycle {
   retina::Reason whatIsMissing(std::int64_t now) const noexcept;
   void followHand() noexcept;
   void begin() noexcept;
+  retina::Reason whyNotThere(const Eigen::Vector3d& wanted) const noexcept;
   const ServoCommand& steer(const Eigen::Vector3d& wanted, double share, retina::Reason why) noexcept;
   Eigen::Vector3d toView(const Eigen::Vector3d& manipulator) const noexcept;
   Eigen::Vector3d toManipulator(const Eigen::Vector3d& view) const noexcept;

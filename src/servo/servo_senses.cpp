@@ -56,6 +56,7 @@ void ServoSenses::placeView(double prepared_um_per_px) noexcept
     cycle_.setPlacement(*placement);
   } else {
     cycle_.startView(*placement);
+    ++views_;
   }
   scale_ = scale;
   adoptions_ = desk_.adoptions();

@@ -32,7 +32,7 @@ class ServoSenses {
   const RegistrationDesk& desk() const noexcept { return desk_; }
   /// Of the port; none where it is not known, or not to be kept.
   std::optional<Eigen::Vector3d> pivot() const noexcept;
-  RetinaFrame frame() const noexcept { return {map_id_, scale_.um_per_px}; }
+  RetinaFrame frame() const noexcept { return {map_id_, scale_.um_per_px, views_}; }
   /// A new pose is in use in this cycle.
   bool poseCame() const noexcept { return pose_came_; }
   /// Mid-exposure of the newest pose in use, by its sender's clock; 0 = none.
@@ -62,6 +62,7 @@ class ServoSenses {
   PivotEstimator pivot_;
   ViewScale scale_;                           // that the view's metres are made of; 0 = nothing is placed yet
   std::int64_t adoptions_ = 0, refined_ = 0;  // of the desk, in the present placement
+  std::int64_t views_ = 0;                    // placed anew so far
   CycleInput input_;
   bool pose_jumped_ = false, pose_came_ = false;
   std::int64_t states_ = 0, poses_ = 0, tips_ = 0;  // taken

@@ -31,7 +31,7 @@ const TrackedView& LockStepVision::look(const simulation::FrameDue& due)
                       {due.utime, due.frame, due.exposure},
                       result,
                       tracker_.getToolTip(),
-                      tracking::AimingSpot()});
+                      tracker_.getAimingSpot()});
   newest_ = {due.t_s, result.tracked, result.reason, result.map_T_frame, frame.map_T_frame};
   tracker_.updateMap();
   return newest_;

@@ -57,17 +57,21 @@ const std::vector<LeftOut>& leftOut()
   return parts;
 }
 
-double recoveryDeadline(const LoopTrialSetting& setting, const Jump& jump)
+RecoveryTiming recoveryTiming(const LoopTrialSetting& setting)
 {
-  return 1e-3 * setting.camera.latency_high_ms + 1.0 / setting.camera.rate_hz +
-         jump.way / (1e-3 * setting.servo.limits.speed_mm_s) + kSlack_s;
+  return {1e-3 * setting.camera.latency_high_ms, 1.0 / setting.camera.rate_hz, 1e-3 * setting.servo.limits.speed_mm_s};
 }
 
-void countRecoveries(const LoopTrialSetting& setting, const LoopResult& result, RecoveryCount& count)
+double recoveryDeadline(const RecoveryTiming& timing, const Jump& jump)
 {
-  for (const Jump& jump : result.jumps) {
+  return timing.latency_s + timing.frame_s + jump.way / timing.speed + kSlack_s;
+}
+
+void countRecoveries(const RecoveryTiming& timing, const std::vector<Jump>& jumps, RecoveryCount& count)
+{
+  for (const Jump& jump : jumps) {
     if (jump.disturbed) continue;
-    const bool in_time = jump.recovery_s <= recoveryDeadline(setting, jump);
+    const bool in_time = jump.recovery_s <= recoveryDeadline(timing, jump);
     ++count.jumps;
     if (in_time) ++count.in_time;
     if (jump.whole) ++count.whole;

@@ -23,8 +23,16 @@ struct LeftOut {
 };
 const std::vector<LeftOut>& leftOut();
 
+/// What a tip needs to be back after a jump.
+struct RecoveryTiming {
+  double latency_s = 0.0;  ///< longest from mid-exposure to the pose
+  double frame_s = 0.0;
+  double speed = 0.0;  ///< of the goal, m/s
+};
+RecoveryTiming recoveryTiming(const LoopTrialSetting& setting);
+
 /// Within which time from a jump's onset the tip must be back: latency + frame + way / goal speed + 40 ms (issue 16).
-double recoveryDeadline(const LoopTrialSetting& setting, const Jump& jump);
+double recoveryDeadline(const RecoveryTiming& timing, const Jump& jump);
 
 /// Saccades whose recovery was looked at.
 struct RecoveryCount {
@@ -32,7 +40,7 @@ struct RecoveryCount {
   int whole = 0, whole_in_time = 0;  ///< of these, without a refused or wrong frame
   std::vector<double> seconds;       ///< until the tip was back
 };
-void countRecoveries(const LoopTrialSetting& setting, const LoopResult& result, RecoveryCount& count);
+void countRecoveries(const RecoveryTiming& timing, const std::vector<Jump>& jumps, RecoveryCount& count);
 
 /// The tip after a step of its goal on a still retina, without tremor and noise.
 struct StepResponse {

@@ -101,6 +101,16 @@ TEST_F(Guided, APointHoldsTheTipOverItAtTheHandsHeight)
   EXPECT_NEAR(goal.z(), -1e-3, 1e-6);
 }
 
+// Before a camera is registered places are in another frame; what was a place there must not be travelled from.
+TEST_F(Guided, AViewPlacedAnewForgetsPlacesFromBefore)
+{
+  after(pointAt(200.0, 100.0), {12000.0, 9000.0});
+  ++frame.view;
+  const Eigen::Vector3d goal = after(pointAt(200.0, 100.0), {300.0, 150.0}, 1);
+  EXPECT_LT((pxOf(goal) - Eigen::Vector2d(300.0, 150.0)).norm(), 1.0) << "it begins at the hand";
+  EXPECT_LT((pxOf(after(pointAt(200.0, 100.0), {300.0, 150.0}, 500)) - Eigen::Vector2d(200.0, 100.0)).norm(), 1.0);
+}
+
 TEST_F(Guided, LambdaLeavesTheHandItsShare)
 {
   const Eigen::Vector3d goal = after(pointAt(200.0, 100.0, 0.2), {300.0, 100.0});  // 500 um from it

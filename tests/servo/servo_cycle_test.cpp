@@ -124,6 +124,15 @@ TEST(ServoCycle, AGoalThatIsNoneGivesWayToTheHandAndIsCounted)
   EXPECT_GE(cycle.refusals().of(Reason::goal_not_finite), 300);
 }
 
+TEST(ServoCycle, AGoalFarBeyondTheReachGivesWayToTheHand)
+{
+  ServoCycle cycle({}, {});
+  runQuiet(cycle, 0, 1000, Eigen::Vector3d(1e-3, 0.0, 0.0));
+  runQuiet(cycle, 1000, 3000, Eigen::Vector3d(4.1e-3, 0.0, 0.0));
+  EXPECT_EQ(cycle.last().reason, Reason::out_of_reach);
+  EXPECT_LT(cycle.last().goal.norm(), 1e-6) << "the hand is at the origin";
+}
+
 TEST(ServoCycle, ARefinedPlacementMovesNothing)
 {
   ServoCycle cycle({}, {});

@@ -79,8 +79,8 @@ TEST(LoopTrial, ComesBackAfterASaccadeInTime)
     LoopTrialSetting setting = loopSetting("saccade", camera);
     RecoveryCount count;
     for (int seed = 0; seed < kSeeds; ++seed)
-      countRecoveries(setting, runLoopTrial(setting, holdTask(workingPlace()), static_cast<std::uint64_t>(seed)),
-                      count);
+      countRecoveries(recoveryTiming(setting),
+                      runLoopTrial(setting, holdTask(workingPlace()), static_cast<std::uint64_t>(seed)).jumps, count);
     ASSERT_GT(count.jumps, kSeeds);
     EXPECT_GE(count.in_time, 0.95 * count.jumps) << camera;
     EXPECT_EQ(count.whole_in_time, count.whole) << camera;
