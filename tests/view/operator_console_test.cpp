@@ -74,6 +74,7 @@ class Console : public testing::Test {
     target.spot_um = target.burn_um = 100.0;
     target.duration_ms = 20.0;
     target.power_mw = power_mw;
+    target.clearance_um = 500.0;
     plan.targets = {target};
     const std::string path = folder_.path("plan.json");
     files::writePlan(plan, path);
