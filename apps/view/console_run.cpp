@@ -48,17 +48,18 @@ void ConsoleRun::run()
   if (!failure.empty()) throw CommandError(failure);
 }
 
+// A line a turn: each is a wish of its own that the servo hears, also where a file has many.
 void ConsoleRun::obeyLines()
 {
   while (!console_.quits() && !interruption_.requested()) {
     turn(!console_.waits());
-    while (!console_.waits() && !console_.quits()) {
-      const std::optional<std::string> line = lines_.next();
-      if (!line) break;
+    if (console_.waits()) continue;
+    if (const std::optional<std::string> line = lines_.next()) {
       ++line_;
       obey(*line);
+    } else if (lines_.ended()) {
+      return;
     }
-    if (lines_.ended() && !console_.waits()) return;
   }
 }
 

@@ -36,6 +36,7 @@ class Loop(LiveCase):
         self.servo.expect("calibrated: ", 60)
         self.view.tell("await registration")
         self.view.tell("ready")  # from Assist, a fixture that cannot guide at once would be a reason to hold
+        self.view.tell("await ready")
 
     def hold(self, seconds):
         """As a human would: where the computer had no time for a quarter of a second, the servo holds, and he re-arms."""
