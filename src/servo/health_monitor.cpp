@@ -108,6 +108,7 @@ const Health& HealthMonitor::judge(const LoopSigns& signs, std::int64_t monotoni
   const bool heard = ears_.operators.silence(monotonic) <= microsecondsOf(options_.operator_silence_ms);
   health_.operator_link = heard ? Reason::none : Reason::operator_stale;
   health_.messages = messages(monotonic);
+  if (health_.messages == Reason::none) health_.messages = signs.commands;
   health_.registration = signs.registration;
   health_.retina = retinaOf(signs, monotonic);
   health_.fixture = signs.fixture;

@@ -43,6 +43,7 @@ struct LoopSigns {
   retina::Reason retina = retina::Reason::none;        ///< why no pose can be used: no_pose, pose_stale, pose_jumped
   retina::Reason registration = retina::Reason::none;  ///< why nothing may be servoed by it
   retina::Reason fixture = retina::Reason::none;       ///< why the wanted one cannot be made
+  retina::Reason commands = retina::Reason::none;      ///< why the manipulator obeys none of those that are sent
   retina::Reason plan = retina::Reason::none;          ///< why none is in force
 };
 

@@ -65,6 +65,7 @@ const CalibrationSamples* Servo::samples() const noexcept
 void Servo::cycle(const messaging::ReceiveTime& now, const CycleTiming& timing) noexcept
 {
   now_ = now;
+  commanded_ = motion_.has_value();
   motion_.reset();
   try {
     run(timing);
@@ -115,6 +116,17 @@ bool Servo::wantsCalibration() const noexcept
   return said && said->fixture.kind == messaging::FixtureKind::calibration;
 }
 
+// A controller that is commanded all the time and yet finds every command too old, or hears none: they are held up on
+// their way. Counted in cycles, for the servo's own pauses are none of that.
+Reason Servo::whyNotObeyed() noexcept
+{
+  const MicronState* state = ears_.states.latest();
+  const Reason why = state ? state->reason : Reason::none;
+  const bool refused = why == Reason::expired || why == Reason::no_command || why == Reason::clock_stepped;
+  unobeyed_ = refused && commanded_ ? unobeyed_ + 1 : 0;
+  return unobeyed_ > options_.command_expiry_ms ? why : Reason::none;
+}
+
 LoopSigns Servo::signs(const Outlook& outlook) noexcept
 {
   LoopSigns signs;
@@ -122,6 +134,7 @@ LoopSigns Servo::signs(const Outlook& outlook) noexcept
   signs.state = hasState(outlook) ? Reason::none : outlook.reason;
   signs.fixture = fixture_reason_;
   signs.plan = burning_.planReason();
+  signs.commands = whyNotObeyed();
   // What guides without the camera asks for none.
   const bool blind = wish_.mode == Mode::assist && !guidance_.needsRetina();
   if (blind) return signs;
@@ -162,7 +175,16 @@ void Servo::burn(const Outlook& outlook) noexcept
 bool Servo::isGuided() const noexcept
 {
   if (supervisor_.state() == State::laser) return burn_.goal.has_value();
-  return supervisor_.state() == State::assist && guidance_.guides();
+  return supervisor_.state() == State::assist && !burn_goal_ && guidance_.guides();
+}
+
+// A target that is given up is left by the ramp alone: another goal in its place would be a step.
+Eigen::Vector3d Servo::goalOf(const Outlook& outlook, double share) noexcept
+{
+  const Eigen::Vector3d fixture_goal = guidance_.goal(outlook);
+  if (burn_.goal) burn_goal_ = burn_.goal;
+  if (share <= 0.0) burn_goal_.reset();
+  return burn_goal_.value_or(fixture_goal);
 }
 
 const ServoCommand& Servo::guide(const Outlook& outlook) noexcept
@@ -170,10 +192,10 @@ const ServoCommand& Servo::guide(const Outlook& outlook) noexcept
   const double share = hand_over_.update(isGuided(), outlook.step_s);
   const bool engaged = supervisor_.state() == State::assist || share > 0.0;
   guidance_.engage(engaged ? Guidance::Engaged::yes : Guidance::Engaged::no);
-  const Eigen::Vector3d goal = guidance_.goal(outlook);
+  const Eigen::Vector3d goal = goalOf(outlook, share);
   if (wantsCalibration() && supervisor_.state() != State::laser)
     return cycle_.commandTip(outlook.hand + calibration_.deflection(now_.monotonic, senses_.shaft()), share);
-  return cycle_.command(burn_.goal.value_or(goal), share);
+  return cycle_.command(goal, share);
 }
 
 std::optional<MicronMode> Servo::modeOf(const Outlook& outlook) const noexcept

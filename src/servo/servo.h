@@ -83,7 +83,9 @@ class Servo {
   bool isGuided() const noexcept;
   void burn(const Outlook& outlook) noexcept;
   const ServoCommand& guide(const Outlook& outlook) noexcept;
+  Eigen::Vector3d goalOf(const Outlook& outlook, double share) noexcept;
   std::optional<messaging::MicronMode> modeOf(const Outlook& outlook) const noexcept;
+  retina::Reason whyNotObeyed() noexcept;
   void move(const Outlook& outlook);
   void publishMotion(messaging::MicronMode mode, const Eigen::Vector3d& goal);
   void publishLaser();
@@ -121,6 +123,9 @@ class Servo {
   std::int64_t adoptions_ = 0;      // in it
   retina::Reason registration_reason_ = retina::Reason::none;
   BurnOutput burn_;
+  std::optional<Eigen::Vector3d> burn_goal_;  // until the hand-over from it is complete
+  bool commanded_ = false;                    // in the last cycle
+  int unobeyed_ = 0;                          // cycles in which commands were sent and none was obeyed
   std::optional<messaging::MicronCommand> motion_;
 };
 

@@ -30,7 +30,7 @@ struct Health {
   retina::Reason rival = retina::Reason::none;          ///< another servo commands the same manipulator
   retina::Reason state_link = retina::Reason::none;     ///< MICRON_STATE has not come for 50 ms
   retina::Reason operator_link = retina::Reason::none;  ///< OPERATOR has not come for 200 ms
-  retina::Reason messages = retina::Reason::none;       ///< too many were refused
+  retina::Reason messages = retina::Reason::none;       ///< too many were refused, or no command is obeyed
   retina::Reason registration = retina::Reason::none;   ///< the camera is not registered well enough
   retina::Reason retina = retina::Reason::none;         ///< no pose for 250 ms
   retina::Reason fixture = retina::Reason::none;        ///< no fixture can be made of what the human asked for

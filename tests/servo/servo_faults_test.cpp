@@ -257,6 +257,20 @@ TEST_F(ServoFaults, WhatTheControllerRefusedCountsToo)
   EXPECT_EQ(another.reason(), Reason::replayed);
 }
 
+TEST_F(ServoFaults, CommandsOfWhichNoneIsObeyedForAWholeLifeAreHold)
+{
+  for (const Reason why : {Reason::expired, Reason::no_command, Reason::clock_stepped}) {
+    ServoBench held_up;
+    held_up.assist();
+    held_up.spoil_state = [why](micron_state_t& state) { state.reason = static_cast<std::int16_t>(why); };
+    held_up.run(50);
+    ASSERT_EQ(held_up.state(), State::assist);
+    held_up.step();
+    EXPECT_EQ(held_up.state(), State::hold);
+    EXPECT_EQ(held_up.reason(), why);
+  }
+}
+
 TEST_F(ServoFaults, APoseThatJumpsFartherThanAnyEyeIsHold)
 {
   double jump_px = 250.0;  // 1.25 mm: a saccade

@@ -107,6 +107,33 @@ TEST_F(ServoLaser, ThePoseThatJumpsPutsItOut)
   expectOut(State::hold);
 }
 
+TEST_F(ServoLaser, ATargetThatIsGivenUpIsLeftByTheRampAlone)
+{
+  bench.laser.state.foot_switch = false;
+  for (const WantedMode mode : {WantedMode::ready, WantedMode::assist}) {
+    bench.askMode(WantedMode::laser);
+    bench.ask([](OperatorWish& w) {
+      w.fixture.kind = messaging::FixtureKind::point;
+      w.fixture.point_px = ServoBench::mapPoint(300e-6, 300e-6);
+    });
+    bench.run(800);
+    ASSERT_EQ(bench.state(), State::laser) << retina::word(bench.reason());
+    Eigen::Vector3d before = bench.tip;
+    double fastest = 0.0;
+    bench.after_cycle = [&] {
+      fastest = std::max(fastest, (bench.tip - before).norm() / 1e-3);
+      before = bench.tip;
+    };
+    const double farthest = (bench.tip - bench.null).norm();
+    ASSERT_GT(farthest, 200e-6);
+    bench.askMode(mode);
+    bench.run(400);
+    // The steepest part of a smooth ramp of 150 ms, to the hand and on to a fixture 0.4 mm away.
+    EXPECT_LT(fastest, 1.7 * (farthest + 0.5e-3) / 0.15) << static_cast<int>(mode);
+    bench.after_cycle = nullptr;
+  }
+}
+
 TEST_F(ServoLaser, NothingIsAimedOutsideOfLaser)
 {
   fireFirst();
