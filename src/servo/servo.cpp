@@ -193,7 +193,7 @@ const ServoCommand& Servo::guide(const Outlook& outlook) noexcept
   const bool engaged = supervisor_.state() == State::assist || share > 0.0;
   guidance_.engage(engaged ? Guidance::Engaged::yes : Guidance::Engaged::no);
   const Eigen::Vector3d goal = goalOf(outlook, share);
-  if (wantsCalibration() && supervisor_.state() != State::laser)
+  if (wantsCalibration() && supervisor_.state() != State::laser && !burn_goal_)
     return cycle_.commandTip(outlook.hand + calibration_.deflection(now_.monotonic, senses_.shaft()), share);
   return cycle_.command(goal, share);
 }
