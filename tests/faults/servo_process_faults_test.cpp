@@ -81,6 +81,16 @@ TEST_F(ServoProcess, AfterAKilledOneAnotherIsHeardOnlyWhenTheDevicesAreRestarted
   servo = bench.startServo("another");
   bench.run(1500);
   EXPECT_FALSE(bench.record.states.last().value.follows_command) << "the controller keeps to the first it heard";
+  EXPECT_EQ(bench.state(), ServoState::hold);
+  EXPECT_EQ(bench.record.statuses.last().value.reason, Reason::wrong_session);
+  bench.hardware().inject(simulation::HardwareFault::restart);
+  bench.run(100);
+  bench.record.acceptNewSessions();
+  EXPECT_EQ(bench.state(), ServoState::fault);
+  bench.rearm();
+  EXPECT_TRUE(bench.runUntil([this] { return bench.state() == wanted; }, 1000));
+  bench.run(300);
+  EXPECT_TRUE(bench.record.states.last().value.follows_command) << describe(bench.record.statuses.last());
 }
 
 TEST_F(ServoProcess, APulseEndsWhenTheServoStops)
@@ -89,6 +99,7 @@ TEST_F(ServoProcess, APulseEndsWhenTheServoStops)
   ASSERT_NO_FATAL_FAILURE(fire());
   mark();
   bench.hardware().inject(simulation::HardwareFault::tip_not_finite);
+  has_states = false;
   expectStop(ServoState::fault, Reason::state_not_finite);
 }
 

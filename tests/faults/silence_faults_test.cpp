@@ -30,6 +30,7 @@ TEST_P(SilenceFaults, VisionThatStopsIsHoldWhenItsLastFrameIs250MillisecondsOld)
 TEST_P(SilenceFaults, AManipulatorThatStopsIsHoldAfter50Milliseconds)
 {
   mark();
+  has_states = false;
   bench.hardware().inject(HardwareFault::states_stop);
   const auto stop = expectStop(ServoState::hold, Reason::state_stale);
   ASSERT_TRUE(stop);

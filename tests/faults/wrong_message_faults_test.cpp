@@ -41,6 +41,7 @@ TEST_F(WrongMessages, AStateThatIsNoNumberIsAFaultAtOnce)
 {
   markFault();
   bench.hardware().inject(HardwareFault::tip_not_finite);
+  has_states = false;
   const auto stop = expectStop(ServoState::fault, Reason::state_not_finite);
   expectRefused(stop, Reason::not_finite, 1, 1000.0);
   bench.hardware().mend(HardwareFault::tip_not_finite);
@@ -50,8 +51,9 @@ TEST_F(WrongMessages, AStateThatIsNoNumberIsAFaultAtOnce)
 TEST_F(WrongMessages, AControllerThatRestartsIsAFaultAtOnce)
 {
   markFault();
-  bench.record.acceptNewSessions();
   bench.hardware().inject(HardwareFault::restart);
+  bench.run(3);
+  bench.record.acceptNewSessions();  // who listens has noticed it, too
   const auto stop = expectStop(ServoState::fault, Reason::controller_restarted);
   expectRefused(stop, Reason::wrong_session, 1, 1000.0);
   expectOnlyRearmingLeads(wanted);
@@ -62,7 +64,7 @@ TEST_F(WrongMessages, AClockThatStepsIsAFaultAtOnce)
   markFault();
   bench.hardware().inject(HardwareFault::clock_step);
   bench.run(3);
-  bench.record.acceptNewSessions();  // who listens has noticed it, too
+  bench.record.acceptNewSessions();
   const auto stop = expectStop(ServoState::fault, Reason::clock_stepped);
   expectRefused(stop, Reason::clock_stepped, 1, 1000.0);
   expectOnlyRearmingLeads(wanted);

@@ -100,6 +100,9 @@ class LiveBench {
   /// Longest since it was asked last, ms: a busy computer.
   std::int64_t takeLongestPause() { return std::exchange(longest_pause_, 0); }
 
+  /// The tip's highest speed in any millisecond since it was asked last, as it really was; m/s.
+  double takeFastestTip() { return std::exchange(fastest_tip_, 0.0); }
+
   void ask(const std::function<void(messaging::OperatorWish&)>& change)
   {
     change(wish);
@@ -229,6 +232,9 @@ class LiveBench {
   void stepWorld(std::int64_t milliseconds_ago)
   {
     hardware_->step({now.monotonic - 1000 * milliseconds_ago, now.utime - 1000 * milliseconds_ago});
+    const Eigen::Vector3d& tip = hardware_->truth().tip;
+    if (!last_tip_.isZero(0.0)) fastest_tip_ = std::max(fastest_tip_, (tip - last_tip_).norm() / 1e-3);
+    last_tip_ = tip;
     if (auto due = hardware_->frameDue()) frames_.push_back(std::move(*due));
   }
 
@@ -278,7 +284,9 @@ class LiveBench {
     }
   }
 
-  Eigen::Vector3d place_ = Eigen::Vector3d::Zero();  // of the hand, retina frame, m
+  Eigen::Vector3d place_ = Eigen::Vector3d::Zero();     // of the hand, retina frame, m
+  Eigen::Vector3d last_tip_ = Eigen::Vector3d::Zero();  // a millisecond ago
+  double fastest_tip_ = 0.0;
   messaging::Link device_link_{"memq://", kSession, kKey};
   std::optional<simulation::Hardware> hardware_;
   std::deque<OnItsWay> on_their_way_;
