@@ -16,7 +16,7 @@ struct PivotEstimatorOptions {
   double least_samples = 50.0;
   double least_residual_um = 15.0;
   double shafts_alike = 20.0;
-  double worst_error_um = 400.0;
+  double worst_error_um = 350.0;
   double outlier_um = 1000.0;
 
   template <class Self, class Visitor>
