@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """results.py [PART...]: measures on the sequences of ../shared/sequences and writes docs/results.md.
 
-The parts: tracking, paper_method, methods, detectors, guidance, plans, loop; without any, all. What is not measured again is
+The parts: tracking, paper_method, methods, detectors, guidance, plans, loop, rendered_loop, processes; without any, all. What is not measured again is
 taken from out/results/PART.md. Errors and maps are judged by ../shared/score.py; the command of each figure stands beside it.
 Needs a release build.
 """
@@ -247,7 +247,26 @@ def loop(names):
     yield bench("loop")
 
 
-PARTS = {part.__name__: part for part in (tracking, paper_method, methods, detectors, guidance, plans, loop)}
+def rendered_loop(names):
+    yield "## The whole loop, on rendered frames\n"
+    yield "Lock-step trials with everything that a live one has: frames rendered at 800x608 (30 Hz) or 400x304 (120 Hz), the real"
+    yield "tracker, a calibration of its own by a sweep with the aiming beam, the servo and the simulated hardware, nothing but"
+    yield "messages between them. Hold a point of the retina, um; tremor of 50 to 100 um RMS per axis, 20 seeds of 20 s.\n"
+    yield "```text\neyeslam-bench loop --rendered\n```"
+    yield bench("loop", "--rendered")
+
+
+def processes(names):
+    yield "## The loop as processes\n"
+    yield "`eyeslam-servo` and `eyeslam-track` as processes over UDP against a simulated manipulator, frames of 800x608 at 30 Hz"
+    yield "rendered before, beside a bare timer loop of the same priority. A frame counts from the end of its exposure; the CPU"
+    yield "of a cycle is all of it, receiving and sending included.\n"
+    yield "```text\neyeslam-bench live --seconds 600\n```"
+    yield bench("live", "--seconds", "600")
+
+
+PARTS = {part.__name__: part
+         for part in (tracking, paper_method, methods, detectors, guidance, plans, loop, rendered_loop, processes)}
 
 
 def head():
