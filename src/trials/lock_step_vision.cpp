@@ -26,14 +26,15 @@ const TrackedView& LockStepVision::look(const simulation::FrameDue& due)
   const simulation::RenderedFrame frame = camera_.render(due);
   image_ = frame.image;
   const tracking::TrackResult& result = live_.track(tracker_, image_);
+  const bool frozen = result.reason == retina::Reason::frozen;  // nothing was seen
   const auto latency = std::llround(random_.uniform(latency_low_, latency_high_));
   waiting_.push_back({due.utime + latency,
                       {due.utime, due.frame, due.exposure},
                       result,
-                      tracker_.getToolTip(),
-                      tracker_.getAimingSpot()});
+                      frozen ? tracking::ToolTip() : tracker_.getToolTip(),
+                      frozen ? tracking::AimingSpot() : tracker_.getAimingSpot()});
   newest_ = {due.t_s, result.tracked, result.reason, result.map_T_frame, frame.map_T_frame};
-  tracker_.updateMap();
+  if (!frozen) tracker_.updateMap();
   return newest_;
 }
 
