@@ -20,6 +20,7 @@ ChildProgram::ChildProgram(const std::string& path, const std::vector<std::strin
   std::vector<std::string> words = {path};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
+  pointers.reserve(words.size() + 1);
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   if (const int error = posix_spawn(&id_, path.c_str(), nullptr, nullptr, pointers.data(), environ); error != 0) {
