@@ -64,6 +64,7 @@ std::vector<RenderedResult> run(const RenderedTrialSetting& setting, const LoopI
 ErrorFigures inMicrometres(const std::vector<double>& metres)
 {
   std::vector<double> um;
+  um.reserve(metres.size());
   for (const double error : metres) um.push_back(error / kMicro);
   return trials::errorFigures(std::move(um));
 }
