@@ -348,7 +348,7 @@ TEST(RobotMicron, AsksForAShaftThatPassesThePortWithin100MicrometresWithNoise)
   };
   RobotMicron robot(micron.link, micron.clock);
   robot.setRobotState(vpRobot::STATE_STOP);
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < 600; ++i) {
     micron.step(33);
     robot.keepAlive();
   }
