@@ -24,7 +24,7 @@ namespace eyeslam::servo {
 
 struct PreparationOptions {
   double period_ms = 500.0;
-  double scale_step = 0.01;
+  double scale_step = 0.03;
   double scale_tolerance = 0.03;
   fixtures::VesselGraphOptions graph;
 

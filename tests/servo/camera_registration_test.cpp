@@ -151,7 +151,7 @@ TEST(CameraRegistration, NoticesADriftThatItCannotFollow)
   World world(5);
   CameraRegistration registration;
   registration.fit(world.samples(200));
-  world.camera.col(3) += Eigen::Vector2d(12.0, 0.0);  // 60 um at once: the eye's lens was touched
+  world.camera.col(3) += Eigen::Vector2d(20.0, 0.0);  // 100 um at once: the eye's lens was touched
   int samples = 0;
   while (registration.result().good() && samples < 100) {
     registration.add(world.sampleAt(world.place()));
