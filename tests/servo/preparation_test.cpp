@@ -237,7 +237,7 @@ TEST(PreparationDesk, ItsScaleStandsStillWhileTheMapsOwnHardlyChanges)
   Desk world;
   world.sendMap();
   world.work();
-  for (const auto& [um_per_px, expected] : {std::pair{5.04, 5.0}, {4.96, 5.0}, {5.1, 5.1}, {5.06, 5.1}}) {
+  for (const auto& [um_per_px, expected] : {std::pair{5.1, 5.0}, {4.9, 5.0}, {5.2, 5.2}, {5.1, 5.2}}) {
     world.map.um_per_px = um_per_px;
     ++world.map.version;
     world.sendMap();
