@@ -7,15 +7,14 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
-#include <random>
 #include <stdexcept>
 #include <thread>
 
-#include "command_line/clocks.h"
 #include "command_line/program.h"
 #include "eyeslam/messaging/authentication.h"
 #include "eyeslam/robot/robot_micron.h"
 #include "eyeslam/simulation/hardware.h"
+#include "link/program_link.h"
 
 namespace {
 
@@ -46,7 +45,7 @@ void waitForFrame(messaging::ReceiveTime& now, messaging::Link& link, simulation
 
 void servoToPoint(const Arguments& arguments)
 {
-  const auto session = static_cast<std::int64_t>(std::random_device{}()) + 1;
+  const std::int64_t session = apps::newSession();
   const auto key = arguments.key.empty() ? std::nullopt : std::make_optional(messaging::readKey(arguments.key));
   messaging::Link link(arguments.simulate ? "memq://" : arguments.url, session, key);
   messaging::ReceiveTime now{1'000'000, 1'700'000'000'000'000};
@@ -54,10 +53,7 @@ void servoToPoint(const Arguments& arguments)
   if (arguments.simulate)
     hardware = std::make_unique<simulation::Hardware>(simulation::HardwareOptions{},
                                                       simulation::holdPlace({0.0, 0.0, -0.5e-3}), link, session);
-  robot::RobotMicron micron(link, [&] {
-    const auto monotonic = static_cast<std::int64_t>(1e6 * apps::monotonicSeconds());
-    return hardware ? now : messaging::ReceiveTime{monotonic, apps::utimeNow()};
-  });
+  robot::RobotMicron micron(link, [&] { return hardware ? now : apps::receiveTime(); });
   waitForFrame(now, link, hardware.get());
   micron.init();
   micron.setMaxTranslationVelocity(5e-3);

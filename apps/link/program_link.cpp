@@ -46,30 +46,31 @@ std::string unsignedNotice(const LinkArguments& arguments)
   return arguments.key.empty() ? "no --key FILE: messages are unsigned and stay on this computer" : "";
 }
 
-RunMark::RunMark(messaging::Link& link, std::string program, const Configuration& configuration)
+void sendMark(messaging::Publisher<mark_t>& marks, std::int16_t kind, const std::string& program,
+              const RunConfiguration& configuration)
+{
+  mark_t message{};
+  message.utime = utimeNow();
+  message.kind = kind;
+  message.sender = program;
+  message.version = kVersion;
+  message.configuration = configuration.yaml;
+  message.configuration_hash = configuration.hash;
+  marks.publish(message, message.utime);
+}
+
+RunMark::RunMark(messaging::Link& link, std::string program, const RunConfiguration& configuration)
     : program_(std::move(program)), marks_(link)
 {
-  send(mark_t::START, configuration);
+  sendMark(marks_, mark_t::START, program_, configuration);
 }
 
 RunMark::~RunMark()
 {
   try {
-    send(mark_t::STOP, {});
+    sendMark(marks_, mark_t::STOP, program_, {});
   } catch (const std::exception&) {  // the end of a run is not held up by its note
   }
-}
-
-void RunMark::send(std::int16_t kind, const Configuration& configuration)
-{
-  mark_t message{};
-  message.utime = utimeNow();
-  message.kind = kind;
-  message.sender = program_;
-  message.version = kVersion;
-  message.configuration = configuration.yaml;
-  message.configuration_hash = configuration.hash;
-  marks_.publish(message, message.utime);
 }
 
 }  // namespace eyeslam::apps

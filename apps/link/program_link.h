@@ -34,24 +34,27 @@ messaging::Link openLink(const LinkArguments& arguments, std::int64_t session);
 /// One line for people about unsigned messages; empty with a key.
 std::string unsignedNotice(const LinkArguments& arguments);
 
+/// What a program runs with, for the log.
+struct RunConfiguration {
+  std::string yaml;
+  std::string hash;
+};
+
+/// One MARK. @param kind  as in mark_t; @param program  as it is called
+void sendMark(messaging::Publisher<mark_t>& marks, std::int16_t kind, const std::string& program,
+              const RunConfiguration& configuration);
+
 /// MARK at start and end: the log then tells which program ran how.
 class RunMark {
  public:
-  struct Configuration {
-    std::string yaml;
-    std::string hash;
-  };
-
   /// @param program        as it is called
   /// @param configuration  empty where there is none
-  RunMark(messaging::Link& link, std::string program, const Configuration& configuration);
+  RunMark(messaging::Link& link, std::string program, const RunConfiguration& configuration);
   ~RunMark();
   RunMark(const RunMark&) = delete;
   RunMark& operator=(const RunMark&) = delete;
 
  private:
-  void send(std::int16_t kind, const Configuration& configuration);
-
   std::string program_;
   messaging::Publisher<mark_t> marks_;
 };

@@ -52,7 +52,7 @@ try {
   throw files::FileError(fmt::format("--retina {}: {}", arguments.retina, error.what()));
 }
 
-RunMark::Configuration recorded(const simulation::HardwareOptions& options)
+RunConfiguration recorded(const simulation::HardwareOptions& options)
 {
   return {configuration::yamlOf(options), configuration::hashOf(options)};
 }

@@ -2,25 +2,17 @@
 #include "track/message_publisher.h"
 
 #include <optional>
-#include <random>
 
 #include "command_line/clocks.h"
-#include "command_line/version.h"
 #include "eyeslam/tracking/eyeslam_tracker.h"
 #include "eyeslam/tracking/masked_frame.h"
+#include "link/program_link.h"
 
 namespace eyeslam::apps {
 namespace {
 
 constexpr double kMicroseconds = 1e6;  // a second
-
-// Not 0, and different in every run.
-std::int64_t newSession()
-{
-  std::random_device random;
-  const std::uint64_t bits = (static_cast<std::uint64_t>(random()) << 32U) | random();
-  return static_cast<std::int64_t>(bits >> 1U) | 1;
-}
+constexpr const char* kProgram = "eyeslam-track";
 
 std::optional<messaging::Key> keyIn(const std::string& file)
 {
@@ -37,27 +29,15 @@ MessagePublisher::MessagePublisher(const std::string& url, const std::string& ke
       vision_(link_, um_per_px, frame_rate),
       period_us_(kMicroseconds / frame_rate)
 {
-  mark(mark_t::START, configuration, configuration_hash);
-}
-
-void MessagePublisher::mark(std::int16_t kind, const std::string& configuration, const std::string& configuration_hash)
-{
-  mark_t message{};
-  message.utime = utimeNow();
-  message.kind = kind;
-  message.sender = "eyeslam-track";
-  message.version = kVersion;
-  message.configuration = configuration;
-  message.configuration_hash = configuration_hash;
-  marks_.publish(message, message.utime);
+  sendMark(marks_, mark_t::START, kProgram, {configuration, configuration_hash});
 }
 
 void MessagePublisher::onRead(const files::VideoFrame& frame)
 {
-  const std::int64_t utime = utimeNow();
-  link_.drain({static_cast<std::int64_t>(kMicroseconds * monotonicSeconds()), utime});
+  const messaging::ReceiveTime now = receiveTime();
+  link_.drain(now);
   followFrameRate(frame);
-  stamp_ = {frame.utime > 0 ? frame.utime : utime, frame.number, frame.exposure};
+  stamp_ = {frame.utime > 0 ? frame.utime : now.utime, frame.number, frame.exposure};
 }
 
 // The tracker's velocity is one per frame that it was given, and a live source leaves frames out.
@@ -91,7 +71,7 @@ void MessagePublisher::onFailure(const files::VideoFrame& frame, const tracking:
   tracking::refuseFrame(last, retina::Reason::record_failed);
   const std::int64_t utime = utimeNow();
   vision_.publishPose({utime, frame.number, 0.0}, last, method.vesselMap().version, utime);
-  mark(mark_t::STOP, "", "");
+  sendMark(marks_, mark_t::STOP, kProgram, {});
 }
 
 void MessagePublisher::onFrame(const files::VideoFrame&, const tracking::TrackResult&, baselines::Method& method)
@@ -99,6 +79,6 @@ void MessagePublisher::onFrame(const files::VideoFrame&, const tracking::TrackRe
   vision_.publishTiles(stamp_, method.vesselMap(), utimeNow());
 }
 
-void MessagePublisher::finish() { mark(mark_t::STOP, "", ""); }
+void MessagePublisher::finish() { sendMark(marks_, mark_t::STOP, kProgram, {}); }
 
 }  // namespace eyeslam::apps

@@ -35,7 +35,6 @@ class MessagePublisher : public FrameObserver {
 
  private:
   void followFrameRate(const files::VideoFrame& frame);
-  void mark(std::int16_t kind, const std::string& configuration, const std::string& configuration_hash);
 
   messaging::Link link_;
   messaging::Publisher<mark_t> marks_{link_};
