@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
 #include "eyeslam/retina/reason.h"
 
 namespace eyeslam::apps {
@@ -27,16 +25,10 @@ std::string refusedText(const messaging::Refusals& refused)
 
 }  // namespace
 
-std::string wordOf(messaging::ServoState state)
-{
-  constexpr std::array<const char*, 6> kWords{"standby", "ready", "assist", "laser", "hold", "fault"};
-  return kWords[static_cast<std::size_t>(state)];
-}
-
 std::string stateText(const messaging::ServoStatus& status)
 {
-  if (status.reason == retina::Reason::none) return wordOf(status.state);
-  return fmt::format("{}: {}", wordOf(status.state), retina::word(status.reason));
+  if (status.reason == retina::Reason::none) return std::string(messaging::word(status.state));
+  return fmt::format("{}: {}", messaging::word(status.state), retina::word(status.reason));
 }
 
 std::string statusText(const messaging::ServoStatus& status)

@@ -7,9 +7,6 @@
 
 namespace eyeslam::apps {
 
-/// "standby", "ready", ...
-std::string wordOf(messaging::ServoState state);
-
 /// "hold: pose_stale"; the reason only where there is one.
 std::string stateText(const messaging::ServoStatus& status);
 

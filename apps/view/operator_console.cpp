@@ -131,7 +131,7 @@ std::function<bool()> OperatorConsole::condition(const std::string& what) const
   if (what == "tip") return [this] { return sight().tip_px.has_value(); };
   for (int i = 0; i <= static_cast<int>(ServoState::fault); ++i) {
     const auto state = static_cast<ServoState>(i);
-    if (what != wordOf(state)) continue;
+    if (what != messaging::word(state)) continue;
     return [this, state] { return statuses_.latest() != nullptr && statuses_.latest()->state == state; };
   }
   throw CommandError(

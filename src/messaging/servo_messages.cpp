@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "eyeslam/messaging/servo_messages.h"
 
+#include <array>
 #include <cmath>
 
 #include "eyeslam/messaging/field_copy.h"
@@ -17,6 +18,12 @@ bool isPlane(const PublishedPlane& plane)
 }
 
 }  // namespace
+
+std::string_view word(ServoState state)
+{
+  constexpr std::array<std::string_view, 6> kWords{"standby", "ready", "assist", "laser", "hold", "fault"};
+  return kWords[static_cast<std::size_t>(state)];
+}
 
 template <>
 struct Listing<registration_t> {

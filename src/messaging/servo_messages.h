@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <string_view>
 
 #include "eyeslam/messaging/channel_guard.h"
 #include "eyeslam/messaging/conversion.h"
@@ -34,6 +35,7 @@ struct PublishedRegistration {
 };
 
 enum class ServoState { standby, ready, assist, laser, hold, fault };
+std::string_view word(ServoState state);
 
 /// What the servo does and how well (SERVO_STATUS); s, -1 where nothing has come yet.
 struct ServoStatus {

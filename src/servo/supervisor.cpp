@@ -84,12 +84,6 @@ bool isWanted(State state, Mode mode) { return static_cast<int>(state) == static
 
 }  // namespace
 
-std::string_view word(State state)
-{
-  constexpr std::array<std::string_view, 6> kWords{"standby", "ready", "assist", "laser", "hold", "fault"};
-  return kWords[static_cast<std::size_t>(state)];
-}
-
 State Supervisor::update(const Wish& wish, const Health& health)
 {
   for (const Transition& row : kTable) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <string_view>
-
 #include "eyeslam/retina/reason.h"
 
 namespace eyeslam::servo {
@@ -19,8 +17,6 @@ enum class State {
   hold = 4,     ///< something is missing: tremor cancelling only, laser off, until a human re-arms
   fault = 5,    ///< something is wrong: nothing is commanded, laser off, until a human re-arms
 };
-
-std::string_view word(State state);
 
 /// All that a transition may depend on, judged anew in every cycle: none = as it should be, else what is the matter.
 struct Health {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "eyeslam/trials/lock_step_time.h"
+
 namespace eyeslam::trials {
 
 using servo::ServoCycle;
@@ -13,7 +15,6 @@ using simulation::TrackedFrame;
 namespace {
 
 constexpr double kPeriod_s = 1e-3;
-constexpr std::int64_t kStart_us = 1'700'000'000'000'000;  // any that is not 0 (contracts, section 1)
 
 std::int64_t utimeOf(double t_s) { return kStart_us + std::llround(1e6 * t_s); }
 

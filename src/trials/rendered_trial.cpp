@@ -11,13 +11,13 @@
 #include "eyeslam/servo/servo.h"
 #include "eyeslam/simulation/hardware.h"
 #include "eyeslam/simulation/procedural_fundus.h"
+#include "eyeslam/trials/lock_step_time.h"
 #include "eyeslam/trials/loop_trial.h"
 
 namespace eyeslam::trials {
 
 namespace {
 
-constexpr std::int64_t kStart_us = 1'700'000'000'000'000;  // any that is not 0 (contracts, section 1)
 constexpr std::int64_t kPeriod_us = 1000;
 constexpr std::int64_t kOperatorPeriods = 50;      // 20 Hz (contracts, section 4)
 constexpr std::int64_t kPreparationPeriods = 100;  // as often as a background thread would look
@@ -158,8 +158,8 @@ class RenderedTrial {
     if (t() < kReady_s || status.state == last_state_) return;
     last_state_ = status.state;
     if (status.state == messaging::ServoState::assist) return;
-    result_.obstacles.push_back({t(), std::string(servo::word(static_cast<servo::State>(status.state))),
-                                 std::string(retina::word(status.reason))});
+    result_.obstacles.push_back(
+        {t(), std::string(messaging::word(status.state)), std::string(retina::word(status.reason))});
   }
 
   void judge()
