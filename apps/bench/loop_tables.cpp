@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/error_text.h"
 #include "command_line/progress.h"
 #include "eyeslam/trials/loop_conditions.h"
 #include "eyeslam/trials/trace_task.h"
@@ -51,13 +52,11 @@ class Line {
  private:
   void add(const LoopResult& result)
   {
-    std::vector<double> errors, calm;
-    for (std::size_t i = 0; i < result.errors_m.size(); ++i) {
-      errors.push_back(result.errors_m[i] / kMicro);
-      if (result.calm[i]) calm.push_back(errors.back());
-    }
-    all_.push_back(trials::errorFigures(std::move(errors)));
-    calm_.push_back(trials::errorFigures(std::move(calm)));
+    std::vector<double> calm;
+    for (std::size_t i = 0; i < result.errors_m.size(); ++i)
+      if (result.calm[i]) calm.push_back(result.errors_m[i]);
+    all_.push_back(inMicrometres(result.errors_m));
+    calm_.push_back(inMicrometres(calm));
     trials::countRecoveries(trials::recoveryTiming(setting_), result.jumps, recoveries_);
   }
 
@@ -65,12 +64,6 @@ class Line {
   std::vector<ErrorFigures> all_, calm_;
   trials::RecoveryCount recoveries_;
 };
-
-std::string said(const SeedFigures& figures)
-{
-  return fmt::format("{:.1f} ± {:.1f} / {:.1f} / {:.0f}", figures.mean.rms, figures.rms_spread, figures.mean.median,
-                     figures.mean.p95);
-}
 
 void heading(const std::string& title, const std::vector<std::string>& columns)
 {

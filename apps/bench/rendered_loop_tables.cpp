@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/error_text.h"
 #include "command_line/progress.h"
 #include "eyeslam/trials/error_figures.h"
 #include "eyeslam/trials/loop_conditions.h"
@@ -59,20 +60,6 @@ std::vector<RenderedResult> run(const RenderedTrialSetting& setting, const LoopI
     worker.get();
   }
   return results;
-}
-
-ErrorFigures inMicrometres(const std::vector<double>& metres)
-{
-  std::vector<double> um;
-  um.reserve(metres.size());
-  for (const double error : metres) um.push_back(error / kMicro);
-  return trials::errorFigures(std::move(um));
-}
-
-std::string said(const trials::SeedFigures& figures)
-{
-  return fmt::format("{:.1f} ± {:.1f} / {:.1f} / {:.0f}", figures.mean.rms, figures.rms_spread, figures.mean.median,
-                     figures.mean.p95);
 }
 
 // What went wrong, each kind once.
