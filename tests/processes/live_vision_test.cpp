@@ -1,29 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // eyeslam-track as a live process: a camera's driver writes shm:NAME, poses come back over LCM. EYESLAM_TRACK is the
 // program.
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <spawn.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <fstream>
 #include <iostream>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "eyeslam/files/frame_ring.h"
 #include "eyeslam/messaging/retina_messages.h"
 #include "eyeslam/messaging/subscription.h"
+#include "support/child_process.h"
+#include "support/live_clock.h"
 #include "support/moving_retina.h"
 #include "support/temporary_folder.h"
-
-extern char** environ;  // POSIX leaves it to the program
 
 namespace eyeslam {
 namespace {
@@ -32,71 +26,15 @@ const std::string kProgram = EYESLAM_TRACK;
 const cv::Size kView{400, 304};
 constexpr double kUmPerPx = 10.4;  // so that the view is a microscope's
 
-std::int64_t clockOf(clockid_t id)
-{
-  timespec now{};
-  clock_gettime(id, &now);
-  return now.tv_sec * std::int64_t{1'000'000} + now.tv_nsec / 1000;
-}
-
-std::string freeUrl()
-{
-  static int offset = 0;
-  return "udpm://239.255.76.67:" + std::to_string(20'000 + (getpid() * 7 + offset++) % 40'000) + "?ttl=0";
-}
-
 /// eyeslam-track on shm:NAME; killed at the end unless it has ended.
-class Vision {
- public:
-  Vision(const std::string& ring, const std::string& url, const std::string& folder,
-         const std::vector<std::string>& more, rlim_t file_limit = RLIM_INFINITY)
-      : messages_(folder + "/stderr.txt")
-  {
-    std::vector<std::string> words = {kProgram, "shm:" + ring, "--out",        folder + "/out",
-                                      "--lcm",  url,           "--no-overlay", "--quiet"};
-    words.insert(words.end(), more.begin(), more.end());
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, messages_.c_str(), O_WRONLY | O_CREAT, 0600);
-    rlimit before{};
-    getrlimit(RLIMIT_FSIZE, &before);
-    const rlimit limit{file_limit, before.rlim_max};  // inherited; the ring is as large as it will be
-    setrlimit(RLIMIT_FSIZE, &limit);
-    EXPECT_EQ(posix_spawn(&process_, kProgram.c_str(), &actions, nullptr, arguments.data(), environ), 0);
-    setrlimit(RLIMIT_FSIZE, &before);
-    posix_spawn_file_actions_destroy(&actions);
-  }
-  ~Vision()
-  {
-    if (process_ <= 0) return;
-    kill(process_, SIGKILL);
-    waitpid(process_, nullptr, 0);
-  }
-  Vision(const Vision&) = delete;
-  Vision& operator=(const Vision&) = delete;
-
-  /// Waits for its end. @return exit status
-  int status()
-  {
-    int status = -1;
-    waitpid(process_, &status, 0);
-    process_ = -1;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  std::string complaint() const
-  {
-    std::ostringstream text;
-    text << std::ifstream(messages_).rdbuf();
-    return text.str();
-  }
-
- private:
-  std::string messages_;
-  pid_t process_ = -1;
-};
+support::ChildProcess vision(const std::string& ring, const std::string& url, const std::string& folder,
+                             const std::vector<std::string>& more, rlim_t file_limit = RLIM_INFINITY)
+{
+  std::vector<std::string> words = {kProgram, "shm:" + ring, "--out",        folder + "/out",
+                                    "--lcm",  url,           "--no-overlay", "--quiet"};
+  words.insert(words.end(), more.begin(), more.end());
+  return {words, folder + "/output.txt", file_limit};
+}
 
 /// What was heard of one frame.
 struct Heard {
@@ -108,11 +46,11 @@ class LiveVision : public testing::Test {
  protected:
   void listen(int milliseconds)
   {
-    const std::int64_t end = clockOf(CLOCK_MONOTONIC) + 1000 * milliseconds;
+    const std::int64_t end = support::clockOf(CLOCK_MONOTONIC) + 1000 * milliseconds;
     for (std::int64_t left = 1; left > 0;) {
-      left = (end - clockOf(CLOCK_MONOTONIC)) / 1000;
+      left = (end - support::clockOf(CLOCK_MONOTONIC)) / 1000;
       link_.wait(static_cast<int>(std::max<std::int64_t>(left, 0)));
-      link_.drain({clockOf(CLOCK_MONOTONIC), clockOf(CLOCK_REALTIME)});
+      link_.drain(support::clocks());
     }
   }
 
@@ -120,7 +58,7 @@ class LiveVision : public testing::Test {
   void show(const cv::Mat& picture)
   {
     const std::int64_t number = written_++;
-    ASSERT_TRUE(ring_.write(picture, {number, clockOf(CLOCK_REALTIME), 5000}));
+    ASSERT_TRUE(ring_.write(picture, {number, support::clockOf(CLOCK_REALTIME), 5000}));
     listen(33);
   }
   void show(int pictures)
@@ -140,7 +78,7 @@ class LiveVision : public testing::Test {
   }
 
   support::TemporaryFolder folder_;
-  std::string url_ = freeUrl();
+  std::string url_ = support::freeUrl();
   std::string ring_name_ = "eyeslam_live_" + std::to_string(getpid());
   files::FrameRingWriter ring_{ring_name_, {kView, CV_8UC3, 30.0}};
   support::MovingRetina retina_{kUmPerPx};
@@ -156,7 +94,7 @@ class LiveVision : public testing::Test {
 
 TEST_F(LiveVision, TellsThePoseOfThePictureWithThePicturesOwnTimeSoonAfterIt)
 {
-  Vision vision(ring_name_, url_, folder_.path(""), {});
+  support::ChildProcess program = vision(ring_name_, url_, folder_.path(""), {});
   showUntilHeard();
   show(60);
   std::vector<std::int64_t> latencies;
@@ -178,7 +116,7 @@ TEST_F(LiveVision, TellsThePoseOfThePictureWithThePicturesOwnTimeSoonAfterIt)
 
 TEST_F(LiveVision, RefusesAPictureThatRepeatsAndGoesOn)
 {
-  Vision vision(ring_name_, url_, folder_.path(""), {});
+  support::ChildProcess program = vision(ring_name_, url_, folder_.path(""), {});
   showUntilHeard();
   show(10);
   EXPECT_EQ(count(retina::Reason::frozen), 0);
@@ -192,25 +130,26 @@ TEST_F(LiveVision, RefusesAPictureThatRepeatsAndGoesOn)
 TEST_F(LiveVision, EndsWithALastPoseThatSaysWhyWhenTheRecordingCannotBeWritten)
 {
   constexpr rlim_t kLimit = 3'000'000;  // bytes: some 15 pictures
-  Vision vision(ring_name_, url_, folder_.path(""), {"--record", folder_.path("record.mkv")}, kLimit);
+  support::ChildProcess program =
+      vision(ring_name_, url_, folder_.path(""), {"--record", folder_.path("record.mkv")}, kLimit);
   showUntilHeard();
   for (int i = 0; i < 300 && count(retina::Reason::record_failed) == 0; ++i) show(1);
   ASSERT_EQ(count(retina::Reason::record_failed), 1);
   listen(300);
   EXPECT_EQ(heard_.back().pose.motion.reason, retina::Reason::record_failed) << "nothing after it";
   EXPECT_FALSE(heard_.back().pose.motion.tracked);
-  EXPECT_EQ(vision.status(), 1);
-  const std::string complaint = vision.complaint();
+  EXPECT_EQ(program.wait(), 1);
+  const std::string complaint = program.text();
   EXPECT_EQ(std::count(complaint.begin(), complaint.end(), '\n'), 1) << complaint;
   EXPECT_NE(complaint.find("record.mkv"), std::string::npos) << complaint;
 }
 
 TEST_F(LiveVision, KeepsItsResultsWhenThePicturesEnd)
 {
-  Vision vision(ring_name_, url_, folder_.path(""), {"--timeout", "0.5"});
+  support::ChildProcess program = vision(ring_name_, url_, folder_.path(""), {"--timeout", "0.5"});
   showUntilHeard();
   show(5);
-  EXPECT_EQ(vision.status(), 0);
+  EXPECT_EQ(program.wait(), 0);
   EXPECT_TRUE(std::ifstream(folder_.path("out/trajectory.csv")).good());
 }
 
