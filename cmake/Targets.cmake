@@ -40,7 +40,7 @@ function(eyeslam_test path)
     set(arg_TIMEOUT 300)
   endif()
   set_tests_properties(${name} PROPERTIES TIMEOUT ${arg_TIMEOUT}
-    ENVIRONMENT "EYESLAM_SHARED=${PROJECT_SOURCE_DIR}/../shared;OMP_NUM_THREADS=1")
+    ENVIRONMENT "EYESLAM_SHARED=${PROJECT_SOURCE_DIR}/../shared;OMP_NUM_THREADS=1;TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/thread_sanitizer.supp")
   if(arg_SLOW)
     set_tests_properties(${name} PROPERTIES LABELS slow)
   endif()

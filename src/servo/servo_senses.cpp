@@ -88,7 +88,11 @@ void ServoSenses::takePose() noexcept
   if (ears_.poses.accepted() == poses_) return;
   poses_ = ears_.poses.accepted();
   const messaging::RetinaPose& pose = *ears_.poses.latest();
-  if (!pose.motion.tracked || !(scale_.um_per_px > 0.0)) return;
+  if (!pose.motion.tracked) return;
+  if (!(scale_.um_per_px > 0.0)) {  // of use only once the view is placed, but it is there
+    pose_.utime = ears_.poses.toReceiver(pose.frame.utime);
+    return;
+  }
   if (pose.map.id != map_id_) cycle_.forgetRetina();
   map_id_ = pose.map.id;
   const Eigen::Matrix3d& covariance = pose.motion.covariance;
