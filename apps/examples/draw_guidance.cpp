@@ -15,11 +15,11 @@
 #include "eyeslam/files/partial_file.h"
 #include "eyeslam/files/whole_file.h"
 #include "eyeslam/fixtures/vessel_graph.h"
+#include "eyeslam/fixtures/vessel_walk.h"
 #include "eyeslam/retina/map_hash.h"
 #include "guidance/fixture_field.h"
 #include "guidance/guided_tracing.h"
 #include "guidance/tracing_score.h"
-#include "guidance/vessel_walk.h"
 
 namespace {
 
@@ -100,7 +100,7 @@ std::vector<Eigen::Vector2d> wayToTrace(const retina::VesselMap& map, double um_
 {
   const Eigen::Vector2d size(map.width * map.px_per_cell, map.height * map.px_per_cell);
   const Eigen::Vector2d middle = Eigen::Vector2d(map.origin_x, map.origin_y) + size / 2.0;
-  return longestWay(network, middle, size.norm() / 2.0, kLongest_um / um_per_px);
+  return fixtures::longestWay(network, middle, size.norm() / 2.0, kLongest_um / um_per_px);
 }
 
 // The square around a way, with a margin for what the hand does beside it.
