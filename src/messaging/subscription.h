@@ -9,11 +9,11 @@
 #include <string>
 #include <utility>
 
-#include "eyeslam/messaging/byte_walk.h"
 #include "eyeslam/messaging/channel_guard.h"
 #include "eyeslam/messaging/conversion.h"
 #include "eyeslam/messaging/link.h"
 #include "eyeslam/messaging/message_header.h"
+#include "eyeslam/messaging/message_lengths.h"
 
 namespace lcm {
 struct ReceiveBuffer;
@@ -120,7 +120,7 @@ class Subscription : public ChannelReceiver {
   retina::Reason take(const std::uint8_t* bytes, std::size_t size) override
   {
     using retina::Reason;
-    if (!hasItsLengths(bytes, size)) return Reason::wrong_length;
+    if (!hasItsLengths<Message>(bytes, size)) return Reason::wrong_length;
     const int length = static_cast<int>(size);
     if (message_.decode(bytes, 0, length) != length) return Reason::wrong_length;
     if (const Reason why = read(message_, candidate_); why != Reason::none) return why;
@@ -128,16 +128,6 @@ class Subscription : public ChannelReceiver {
     std::swap(value_, candidate_);
     if (each_) each_(value_, header());
     return Reason::none;
-  }
-
-  static bool hasItsLengths(const std::uint8_t* bytes, std::size_t size)
-  {
-    if constexpr (kFixedSize<Message>) {
-      static const auto kSize = static_cast<std::size_t>(Message().getEncodedSize());
-      return size == kSize;
-    } else {
-      return Conversion<Message>::hasItsLengths(ByteWalk(bytes + sizeof(std::int64_t), size - sizeof(std::int64_t)));
-    }
   }
 
   Each each_;

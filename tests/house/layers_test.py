@@ -18,9 +18,10 @@ ALLOWED = {
     "servo": {"retina", "fixtures", "messaging"},
     "robot": {"retina", "messaging", "servo"},
     "simulation": {"retina", "messaging"},
+    "replay": {"retina", "configuration", "messaging", "files"},
     "trials": None,
 }
-LCM_USERS = {"messaging", "vision", "servo", "robot", "simulation", "trials"}  # of the generated types
+LCM_USERS = {"messaging", "vision", "servo", "robot", "simulation", "replay", "trials"}  # of the generated types
 INCLUDE = re.compile(r'^\s*#include\s*["<]([^">]+)[">]', re.M)
 STREAMS = re.compile(r"<iostream>|\bstd::(?:cout|cerr|clog)\b|\b(?:std::)?f?printf\s*\(\s*(?:std|\")|\bfmt::print\b|\bspdlog::")
 CLOCKS = re.compile(r"_clock::now|\bclock_gettime\b|\bgettimeofday\b|\bgetTickCount\b|\bstd::time\b|\brandom_device\b")

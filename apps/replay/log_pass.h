@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+
+#include "command_line/interruption.h"
+#include "command_line/progress.h"
+#include "eyeslam/replay/sorted_log.h"
+#include "replay/replay_arguments.h"
+
+namespace eyeslam::apps {
+
+/// One pass over a log from its beginning, with progress; Ctrl-C ends it between two events.
+class LogPass {
+ public:
+  /// @param doing  for the progress bar. @throws files::FileError
+  LogPass(const ReplayArguments& arguments, const std::string& doing);
+
+  /// The next event; none at the end or when it was interrupted.
+  std::optional<replay::SortedEvent> next();
+
+  const replay::SortedLog& log() const { return log_; }
+  Interruption& interruption() { return interruption_; }
+  void showProgress();
+  bool interrupted() const { return interrupted_; }
+  /// Ends the pass.
+  void interrupt() { interrupted_ = true; }
+
+  /// @throws files::FileError when no event was found: it is no log
+  void requireEvents() const;
+
+ private:
+  static constexpr std::int64_t kTurn = 256;  // events between looks at signals and clocks
+
+  Interruption interruption_;  // before any thread
+  std::string path_;
+  replay::SortedLog log_;
+  Progress progress_;  // MB
+  std::int64_t events_ = 0;
+  bool interrupted_ = false;
+};
+
+}  // namespace eyeslam::apps

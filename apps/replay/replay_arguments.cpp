@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "replay/replay_arguments.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "command_line/number_check.h"
+#include "command_line/program.h"
+
+namespace eyeslam::apps {
+namespace {
+
+const char* const kExamples =
+    "  eyeslam-replay info trial.lcm\n"
+    "  eyeslam-replay trial.lcm --csv tables\n"
+    "  eyeslam-replay trial.lcm --lcm 'udpm://239.255.76.67:7667?ttl=0' --speed 0.5 --from 10\n"
+    "  eyeslam-replay cut trial.lcm --from 12.5 --to 20 --channels 'MICRON_.*|MARK' --out moment.lcm\n";
+
+CLI::App* addCommand(CLI::App& app, ReplayArguments& a, const std::string& name, const std::string& does)
+{
+  CLI::App* command = app.add_subcommand(name, does);
+  command->add_option("LOG", a.log, "LCM log")->required();
+  command->add_flag("--quiet", a.quiet, "Print nothing but errors");
+  return command;
+}
+
+void addPart(CLI::App& app, ReplayArguments& a)
+{
+  app.add_option("--from", a.part.from, "Begin so long after the log's first event")
+      ->type_name("S")
+      ->check(within(-1e12, 1e12));
+  app.add_option("--to", a.part.to, "End before this time")->type_name("S")->check(within(-1e12, 1e12));
+  app.add_option("--channels", a.part.channels, "Only channels whose whole name this regular expression fits")
+      ->type_name("REGEX");
+}
+
+CLI::App* addInfo(CLI::App& app, ReplayArguments& a)
+{
+  CLI::App* info = addCommand(app, a, "info", "What a log holds: channels, counts, gaps, times, versions, damage");
+  info->add_option("--json", a.json, "The same for programs")->type_name("FILE");
+  return info;
+}
+
+CLI::App* addCut(CLI::App& app, ReplayArguments& a)
+{
+  CLI::App* cut = addCommand(app, a, "cut", "A part of a log as a log");
+  addPart(*cut, a);
+  cut->add_option("--out", a.out, "The new log")->type_name("FILE")->required();
+  return cut;
+}
+
+}  // namespace
+
+ReplayCommands addOptions(CLI::App& app, ReplayArguments& arguments)
+{
+  addStandardOptions(app, kExamples);
+  app.add_option("LOG", arguments.log, "LCM log, as lcm-logger or eyeslam-trial wrote it");
+  addPart(app, arguments);
+  app.add_option("--csv", arguments.csv, "Write its messages as tables, one file a channel")->type_name("DIR");
+  addLinkOptions(app, arguments.link);
+  app.get_option("--lcm")
+      ->description("Play it onto this LCM URL, '' = the default one")
+      ->each([&arguments](const std::string&) { arguments.plays = true; });
+  app.add_option("--speed", arguments.speed, "Of playing, times real time; default 1")
+      ->type_name("X")
+      ->check(within(1e-3, 1e3));
+  app.add_flag("--quiet", arguments.quiet, "Print nothing but errors");
+  return {addInfo(app, arguments), addCut(app, arguments)};
+}
+
+replay::LogSelection selectionOf(const ReplayArguments& arguments)
+try {
+  return replay::LogSelection(arguments.part);
+} catch (const std::invalid_argument& error) {
+  throw UsageError(fmt::format("--from, --to, --channels: {}", error.what()));
+}
+
+void check(const ReplayArguments& arguments)
+{
+  if (arguments.log.empty()) throw UsageError("LOG is missing; an LCM log is wanted, as lcm-logger writes it");
+  if (arguments.plays && !arguments.csv.empty()) throw UsageError("--csv and --lcm: one of them at a time");
+  if (!arguments.plays && arguments.csv.empty()) {
+    throw UsageError("nothing to do: give --csv DIR or --lcm URL, or the command info or cut before LOG");
+  }
+}
+
+}  // namespace eyeslam::apps
