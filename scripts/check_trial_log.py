@@ -21,7 +21,7 @@ import sys
 
 import numpy as np
 
-from trial_log import interlocks, motion, order, pulses
+from trial_log import interlocks, motion, order, pulses, vessel_map
 from trial_log.findings import RULES, Findings, Limits
 from trial_log.message_types import TypeFileError
 from trial_log.plans import Plans
@@ -89,11 +89,12 @@ def check(path, options):
     limits, findings, truth = limits_of(log, options), Findings(), Truth(log, size)
     by_hand = log.settings.get("aid") in ("manual", "none")
     order.check(log, findings)
-    plans = Plans(log, findings)
+    plans = Plans(log, findings, by_hand)
     found = pulses.find(log, plans, truth, findings, limits)
     if by_hand:
         findings.rules.pop("far_explained", None)
-    open_pulses = interlocks.check(log, plans, found, findings, limits, by_hand)
+    near = [] if by_hand else vessel_map.check(log, plans, found, findings, limits)
+    open_pulses = interlocks.check(log, plans, found, findings, limits, near)
     motion.check(log, found, truth, findings, limits)
     far = [pulse for pulse in found if pulse.is_far(limits)]
     explained = sum(pulse.is_explained(limits) for pulse in far)

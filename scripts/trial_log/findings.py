@@ -30,6 +30,7 @@ RULES = {
     "target_valid": "the target is in the plan, and not refused by it or by the newest map",
     "target_unburnt": "the plan in force has it neither as done nor as missed when a pulse begins",
     "vessel_margin": "its clearance to the map's vessels is at least the plan's margin",
+    "map_margin": "by the tiles of VESSEL_MAP no vessel is nearer to the burn's edge, now and a second ago",
     "pose_fresh": "the newest RETINA_POSE is not older than latency + one frame, 60 ms at most",
     "pose_tracked": "the newest frame is tracked, in the plan's map",
     "registered": "the newest REGISTRATION is valid",
@@ -46,6 +47,7 @@ RULES = {
     "deflection_step": "by the truth, the tip leaves its null in a millisecond by no more than the actuators' speed allows",
 }
 INTERLOCKS = tuple(RULES)[tuple(RULES).index("foot_switch"):tuple(RULES).index("stop_ends_pulse")]
+BY_MAP = "map_margin"  # judged once a pulse, by vessel_map
 
 
 @dataclass
@@ -67,6 +69,7 @@ class Limits:
     speed_share: float = 1.05
     speed_noise: float = 1e-3  # m/s: 3 um of the sensor, over 5 ms
     step_noise: float = 1e-6  # m: the needle's bending
+    map_age: float = 1.0  # of what a servo that looks at the map each half second may not know
     clearance: float = 1e-3  # um: of rounding
 
 

@@ -5,7 +5,7 @@ An interlock that cannot be seen to be closed (no message, not a number) is open
 """
 import numpy as np
 
-from trial_log.findings import INTERLOCKS
+from trial_log.findings import BY_MAP, INTERLOCKS
 from trial_log.plans import DONE, MISSED, REFUSED
 
 LASER, HOLD, FAULT = 3, 4, 5  # SERVO_STATUS
@@ -14,14 +14,16 @@ OF_THE_LASER = ("foot_switch", "laser_armed", "interlock_closed")  # all that a 
 AT_THE_START = ("target_unburnt", "not_saturated")
 
 
-def check(log, plans, found, findings, limits, by_hand):
-    """@return  the number of pulses with any interlock open"""
+def check(log, plans, found, findings, limits, near):
+    """@param near  pulses whose map has a vessel too near
+    @return  the number of pulses with any interlock open"""
     judge, open_pulses = Judge(log, plans, limits), 0
+    by_hand = plans.by_hand
     for pulse in (pulse for pulse in found if pulse.command is not None):
-        names = [name for name in INTERLOCKS if _is_open(judge, pulse, name) and (not by_hand or name in OF_THE_LASER)]
+        names = [name for name in (OF_THE_LASER if by_hand else INTERLOCKS) if name != BY_MAP and _is_open(judge, pulse, name)]
         for name in names:
             findings.add(name, log.seconds(pulse.begin), f"pulse {pulse.number} on target {pulse.target}")
-        open_pulses += bool(names)
+        open_pulses += bool(names) or any(pulse is other for other in near)
     return open_pulses
 
 

@@ -14,7 +14,7 @@ PRIMITIVES = {*SIZES, "string"}
 ALL_64 = (1 << 64) - 1
 FIELD = re.compile(r"^\s*([\w.]+)\s+(\w+)((?:\s*\[\s*\w+\s*\])*)\s*$")
 LONGEST_LIST = 4096  # elements of a list that a message tells the length of
-HEADER = np.dtype([("fingerprint", ">u8"), ("utime", ">i8"), ("utime_sent", ">i8"), ("seq", ">i8"), ("session", ">i8")])
+LEAST = 40  # bytes of any message: the fingerprint and what all begin with
 
 
 class TypeFileError(Exception):
@@ -78,14 +78,19 @@ class MessageType:
         return ((total << 1) & ALL_64) + (total >> 63)
 
     @functools.cached_property
-    def layout(self):
-        """As a numpy type, without the fingerprint; none where the size of a message varies."""
+    def head(self):
+        """The fields before the first whose size varies, as a numpy type, without the fingerprint."""
         parts = []
         for name, kind, dimensions in self.fields:
             if kind not in SIZES or not all(size.isdigit() for size in dimensions):
-                return None
+                break
             parts.append((name, SIZES[kind], tuple(int(size) for size in dimensions)))
         return np.dtype(parts)
+
+    @functools.cached_property
+    def layout(self):
+        """All of it as a numpy type; none where the size of a message varies."""
+        return self.head if len(self.head.names) == len(self.fields) else None
 
     def read(self, data, at=0):
         """(fields as a dict, where they end). @throws ValueError  too short, or a length is impossible"""

@@ -33,10 +33,10 @@ def _same(proposed, in_force):
 
 
 class Plans:
-    """All plans of a log."""
+    """All plans of a log. A hand's has no proposal: what it burns by is in force, and that is all."""
 
-    def __init__(self, log, findings):
-        self.log, self.channel = log, log.burn_plan
+    def __init__(self, log, findings, by_hand):
+        self.log, self.channel, self.by_hand = log, log.burn_plan, by_hand
         self.messages = [{name: values[i] for name, values in self.channel.data.items()} for i in range(len(self.channel))]
         self.targets = [{int(target["id"]): target for target in plan["target"]} for plan in self.messages]
         self.proposed = {}  # hash: (index, rank) of its first proposal that bears it
@@ -46,7 +46,7 @@ class Plans:
 
     def _take(self, i, plan, findings):
         hash_ = bytes(plan["hash"])
-        if plan["state"] == PROPOSED:
+        if plan["state"] == PROPOSED or self.by_hand:
             good = hash_of(plan) == hash_
             self.proposed.setdefault(hash_, i) if good else None
         else:
@@ -55,6 +55,15 @@ class Plans:
         if not good:
             word = "proposed" if plan["state"] == PROPOSED else "in force"
             findings.add("plan_hash", self.log.seconds(self.channel.time[i]), f"the plan {word} is not what {hash_.hex()[:12]} says")
+
+    def approved(self, rank):
+        """Index of the plan that a pulse is burnt by: the one that the operator approves, or the hand's own."""
+        if self.by_hand:
+            return int(self.channel.last_before(rank)) if self.channel.last_before(rank) >= 0 else None
+        said = int(self.log.operator.last_before(rank))
+        if said < 0 or not self.log.operator["plan_approved"][said]:
+            return None
+        return self.proposal(bytes(self.log.operator["plan_hash"][said]), rank)
 
     def proposal(self, hash_, rank):
         """Index of the proposal with this hash that was known then; none where there is none."""

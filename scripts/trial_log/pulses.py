@@ -7,6 +7,7 @@ import numpy as np
 
 FIRE = 2
 EDGE_us = 1000  # a message about an edge of the emission may be a millisecond before or after the truth's
+STATE_us = 10_000  # between two LASER_STATE; a laser that says nothing at all is not asked here, but by laser_fresh
 
 
 @dataclass
@@ -37,7 +38,7 @@ def find(log, plans, truth, findings, limits):
     found = [_command(log, findings, pulse) for pulse in _emissions(log)]
     for pulse in found:
         if pulse.command is not None:
-            _plan(log, plans, pulse)
+            pulse.plan = plans.approved(log.laser_command.rank[pulse.command])
             _place(log, plans, truth, pulse)
             _held(log, findings, limits, pulse)
             _dose(log, plans, findings, limits, pulse)
@@ -77,37 +78,38 @@ def _fires(log, pulse, one):
     return np.arange(first, others[after] if after < len(others) else len(commands))
 
 
-def _plan(log, plans, pulse):
-    rank = log.laser_command.rank[pulse.command]
-    said = int(log.operator.last_before(rank))
-    if said >= 0 and log.operator["plan_approved"][said]:
-        pulse.plan = plans.proposal(bytes(log.operator["plan_hash"][said]), rank)
-
-
 def _target(plans, pulse):
     return plans.targets[pulse.plan].get(pulse.target) if pulse.plan is not None else None
 
 
 def _place(log, plans, truth, pulse):
     """Placement, and how far the retina went since the newest frame that the servo could know when it began."""
-    rank, poses = log.laser_command.rank[pulse.command], log.retina_pose
-    tracked = np.flatnonzero(poses["tracked"] != 0)
-    known = tracked[poses.rank[tracked] < rank]
     target = _target(plans, pulse)
-    if target is None or not len(known) or truth.image_centre is None:
+    if target is None or truth.image_centre is None:
         return
-    map_id = plans.messages[pulse.plan]["map_id"]
-    begun = tracked[(poses["map_id"][tracked] == map_id) | (map_id == 0)]
-    if not len(begun):
-        return
-    first = {name: poses[name][begun[0]] for name in ("utime", "x_px", "y_px", "theta")}
-    place = truth.retina_of_map(first, (float(target["x_px"]), float(target["y_px"])))
+    place_px = float(target["x_px"]), float(target["y_px"])
+    if plans.by_hand:  # its map is the true one, and it sees what is
+        place, newest = np.array(place_px) * truth.m_per_px(), pulse.begin
+    else:
+        place, newest = _by_frames(log, truth, pulse, plans.messages[pulse.plan]["map_id"], place_px)
     if place is None:
         return
     spot = log.truth["spot"][pulse.first:pulse.last + 1].mean(axis=0)
     pulse.placement = float(np.hypot(*(spot - place)))
-    then = truth.world_of_retina(int(poses["utime"][known[-1]]), place)
-    pulse.moved = float(np.hypot(*(truth.world_of_retina(pulse.end, place) - then)))
+    way = truth.world_of_retina(pulse.end, place) - truth.world_of_retina(newest, place)
+    pulse.moved = float(np.hypot(*way))
+
+
+def _by_frames(log, truth, pulse, map_id, place_px):
+    """(place on the retina, us of the newest frame); none where no frame tells."""
+    poses = log.retina_pose
+    tracked = np.flatnonzero(poses["tracked"] != 0)
+    known = tracked[poses.rank[tracked] < log.laser_command.rank[pulse.command]]
+    begun = tracked[(poses["map_id"][tracked] == map_id) | (map_id == 0)]
+    if not len(known) or not len(begun):
+        return None, 0
+    first = {name: poses[name][begun[0]] for name in ("utime", "x_px", "y_px", "theta")}
+    return truth.retina_of_map(first, place_px), int(poses["utime"][known[-1]])
 
 
 def _explained(log, plans, findings, limits, pulse):
@@ -158,7 +160,8 @@ def _told(log, findings, found):
         pulse_of[near] = i
         inside = (states.time > pulse.begin + EDGE_us) & (states.time < pulse.end - EDGE_us)
         wrong = near & ((states["pulse"] != pulse.number) | (states["target"] != pulse.target))
-        silent = not near.any()
+        spoken = ((states.time >= pulse.begin) & (states.time <= pulse.end + STATE_us)).any()
+        silent = spoken and not near.any()
         if pulse.command is not None and (wrong.any() or silent or (inside & ~says).any()):
             findings.add("pulse_told", log.seconds(pulse.begin), f"LASER_STATE says something else of pulse {pulse.number}")
     if len(time):

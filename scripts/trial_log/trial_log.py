@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from trial_log.log_events import LogEvents
-from trial_log.message_types import HEADER, read_types
+from trial_log.message_types import LEAST, read_types
 
 TYPES = {"RETINA_POSE": "retina_pose_t", "VESSEL_MAP": "vessel_map_t", "TOOL_TIP": "tool_tip_t",
          "REGISTRATION": "registration_t", "MICRON_STATE": "micron_state_t", "MICRON_COMMAND": "micron_command_t",
@@ -21,6 +21,7 @@ class Channel:
 
     def __init__(self, data, events):
         self.data = data
+        self.bytes = [(event[1], event[2]) for event in events]  # first, length
         self.logged = np.array([event[0] for event in events], dtype=np.int64)
         self.place = np.array([event[3] for event in events], dtype=np.int64)
         sent = np.asarray(data["utime_sent"], dtype=np.int64)
@@ -78,16 +79,14 @@ class TrialLog:
         if kind is None:
             raise ValueError(f"no type {TYPES[name]} for {name}")
         good = [event for event in events if self._has_type(name, kind, event)]
-        if kind.layout is not None:
-            return Channel(self._fixed(np.dtype([("fingerprint", ">u8"), ("message", kind.layout)]), good), good)
-        if name == "VESSEL_MAP":  # large, and its header alone is looked at
-            heads = b"".join(self.events.bytes[first:first + HEADER.itemsize] for _, first, _, _ in good)
-            return Channel(_fields(np.frombuffer(heads, HEADER) if good else np.zeros(0, HEADER)), good)
+        if kind.layout is not None or name == "VESSEL_MAP":
+            return Channel(self._heads(kind.head, good), good)
         return Channel(*self._varying(name, kind, good))
 
     def _has_type(self, name, kind, event):
         time, first, length, _ = event
-        if length < HEADER.itemsize or (kind.layout is not None and length != 8 + kind.layout.itemsize):
+        size = 8 + kind.head.itemsize
+        if length < max(LEAST, size) or (kind.layout is not None and length != size):
             self.strangers.append((name, time, f"{length} bytes are no {kind.name}"))
             return False
         if int.from_bytes(self.events.bytes[first:first + 8], "big") != kind.fingerprint:
@@ -95,8 +94,9 @@ class TrialLog:
             return False
         return True
 
-    def _fixed(self, packed, events):
-        bytes_ = b"".join(self.events.bytes[first:first + length] for _, first, length, _ in events)
+    def _heads(self, head, events):
+        packed = np.dtype([("fingerprint", ">u8"), ("message", head)])
+        bytes_ = b"".join(self.events.bytes[first:first + packed.itemsize] for _, first, _, _ in events)
         return _fields((np.frombuffer(bytes_, packed) if events else np.zeros(0, packed))["message"])
 
     def _varying(self, name, kind, events):
@@ -169,6 +169,7 @@ def _sort(channel):
     order = np.argsort(channel.rank, kind="stable")
     if np.array_equal(order, np.arange(len(order))):
         return
+    channel.bytes = [channel.bytes[i] for i in order]
     for name in ("rank", "time", "place", "logged"):
         setattr(channel, name, getattr(channel, name)[order])
     for field, values in channel.data.items():

@@ -11,8 +11,8 @@ import tempfile
 import unittest
 
 import trial_log_case
-from trial_log_case import LENGTH_ms, OFF_um, PULSE_ms, ROOT, Trial
-from trial_log_faults import BREAKS, FIRST, end_at, far, jump
+from trial_log_case import LENGTH_ms, OFF_um, PULSE_ms, ROOT, UM_PER_PX, Trial
+from trial_log_faults import BREAKS, FIRST, end_at, far, jump, vessel_at
 
 sys.path.insert(0, str(ROOT / "scripts"))
 import check_trial_log  # noqa: E402  (its folder is no package of this test's)
@@ -80,6 +80,12 @@ class CheckTrialLog(unittest.TestCase):
         self.assertEqual((result["violations"], result["far"], result["far_explained"]), ([], 1, 1))
         self.assertAlmostEqual(result["pulses"][0]["placement_um"], OFF_um + 60, delta=1)
 
+    def test_a_vessel_is_near_by_the_edges_of_its_cells(self):
+        for column, rules in ((35, []), (34, ["map_margin"]), (14, []), (15, ["map_margin"])):
+            trial = Trial(TYPES)
+            vessel_at(column)(trial)
+            self.assertEqual(self.rules(trial), rules, column)
+
     def test_what_ends_within_the_reaction_is_no_violation(self):
         for last, rules in ((FIRST + 6, []), (FIRST + 7, ["foot_switch"])):
             trial = Trial(TYPES)
@@ -92,12 +98,16 @@ class CheckTrialLog(unittest.TestCase):
     def test_a_pulse_by_hand_needs_no_servo_and_no_explanation(self):
         trial = Trial(TYPES)
         trial.of("MARK")[0].configuration = trial_log_case.CONFIGURATION.replace("automated", "manual")
-        far(trial)
-        for channel in ("SERVO_STATUS", "REGISTRATION", "MICRON_COMMAND"):
+        for channel in ("SERVO_STATUS", "REGISTRATION", "MICRON_COMMAND", "OPERATOR", "RETINA_POSE", "VESSEL_MAP"):
             trial.leave_out(channel, 0, LENGTH_ms)
+        trial.leave_out("BURN_PLAN", 0, LENGTH_ms, lambda plan: plan.state == 0)
+        trial.set("LASER_COMMAND", 0, LENGTH_ms, utime_image=0)
         trial.set("MICRON_STATE", 0, LENGTH_ms, flags=3)
+        x_px, y_px = trial_log_case.TARGETS[1]  # its map is the truth's
+        trial.set("TRUTH", 0, LENGTH_ms, spot=[(x_px * UM_PER_PX + 70) * 1e-6, y_px * UM_PER_PX * 1e-6])
         result = self.check(trial)
-        self.assertEqual((result["violations"], result["far"], result["interlock_violations"]), ([], 1, 0))
+        self.assertEqual((result["violations"], result["far"], result["interlock_violations"]), ([], 2, 0))
+        self.assertAlmostEqual(result["pulses"][0]["placement_um"], 70.0, delta=1e-6)
         trial.set("LASER_STATE", 0, LENGTH_ms, interlock_closed=False)
         self.assertEqual(self.rules(trial), ["interlock_closed"])
 

@@ -25,6 +25,8 @@ FRAME_ms, AGE_ms = 33, 18  # a frame's period, and the age of its pose when it i
 FIRST_POSE = (12.5, -7.25, 0.03)  # the truth's pose of frame 0: px, px, rad
 TARGETS = {1: (300.0, 250.0), 2: (460.0, 330.0), 3: (500.0, 200.0)}
 OFF_um = 12.0  # of each spot
+TILE = 20  # cells
+VESSEL_COLUMN = 39  # cell, from top to bottom; its edge lies 56 px from the first target, 280 um, the burn's edge 180 um
 CHANNELS = {"MICRON_STATE": "micron_state_t", "LASER_STATE": "laser_state_t", "TRUTH": "truth_t", "MARK": "mark_t",
             "RETINA_POSE": "retina_pose_t", "OPERATOR": "operator_t", "BURN_PLAN": "burn_plan_t", "VESSEL_MAP": "vessel_map_t",
             "MICRON_COMMAND": "micron_command_t", "LASER_COMMAND": "laser_command_t", "REGISTRATION": "registration_t",
@@ -167,8 +169,17 @@ class Trial:
             frame = (t - AGE_ms) // FRAME_ms
             self.say(t, "RETINA_POSE", utime=BEGIN_us + frame * FRAME_ms * MS, frame=frame, exposure=0.008, tracked=True,
                      x_px=float(frame), scale=1.0, map_id=7, um_per_px=UM_PER_PX)
-            self.say(t, "VESSEL_MAP", map_id=7, probability=b"", calibre_px=b"", seen=b"")
+            self._say_tile(t, frame)
             self.say(t, "TOOL_TIP", utime=BEGIN_us + frame * FRAME_ms * MS, frame=frame)
+
+    def _say_tile(self, t, frame):
+        """One of 80 x 60 cells' twelve, in turn; the map has grown to that after its first tiles, by the upper row."""
+        column, row = frame % 4 * TILE, frame // 4 % 3 * TILE
+        cells = bytes(255 if column + i == VESSEL_COLUMN else 0 for _ in range(TILE) for i in range(TILE))
+        grown = frame >= 4
+        self.say(t, "VESSEL_MAP", map_id=7, map_width=80, map_height=60 if grown else 40, origin_x_px=202.0,
+                 origin_y_px=152.0 if grown else 232.0, px_per_cell=4.0, um_per_px=UM_PER_PX, column=column, row=row, width=TILE,
+                 height=TILE, cells=TILE * TILE, probability=cells, calibre_px=cells, seen=cells)
 
     def _human(self, t):
         if t % 50 == 0:

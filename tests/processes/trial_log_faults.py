@@ -29,6 +29,15 @@ def refused_by_the_newest_map(trial):
         message.seq = seq
 
 
+def vessel_at(column):
+    """The map's vessel in another column, of 20 um; 24 and 25 meet at the first target."""
+    def broken(trial):
+        for tile in trial.of("VESSEL_MAP"):
+            row = bytes(255 if tile.column + i == column else 0 for i in range(tile.width))
+            tile.probability = row * tile.height
+    return broken
+
+
 def propose(trial, t, margin_um):
     """Another plan with the old one's hash."""
     trial._say_plan(t, 0)
@@ -260,6 +269,9 @@ BREAKS = [
     ("target_unburnt", plan_state(1)),
     ("target_unburnt", plan_state(2)),
     ("vessel_margin", clearance),
+    ("map_margin", vessel_at(34)),
+    ("map_margin", vessel_at(15)),
+    ("map_margin", lambda trial: trial.leave_out("VESSEL_MAP", 0, LENGTH_ms)),
     ("pose_fresh", old_pose),
     ("pose_tracked", untracked),
     ("pose_tracked", lambda trial: trial.set("RETINA_POSE", FIRST - 50, FIRST + PULSE_ms, map_id=8)),
