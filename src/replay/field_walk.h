@@ -83,6 +83,16 @@ class FieldWalk {
     for (std::size_t i = 0; i < kSize; ++i) visitor_.number(FieldName{name, axes[i], unit}, values[i]);
   }
 
+  template <class Value, std::size_t kRows, std::size_t kColumns>
+  void matrix(std::string_view name, Parts<kRows> rows, Parts<kColumns> columns, const Value (&values)[kRows][kColumns])
+  {
+    for (std::size_t row = 0; row < kRows; ++row) {
+      for (std::size_t column = 0; column < kColumns; ++column) {
+        visitor_.number(FieldName{name, rows[row], {}, columns[column]}, values[row][column]);
+      }
+    }
+  }
+
   /// Of the variables `axes`, row by row; "covariance_x_theta_px_rad".
   template <std::size_t kAxes, std::size_t kSize>
   void covariance(std::string_view name, Parts<kAxes> axes, Parts<kAxes> units, const double (&values)[kSize])

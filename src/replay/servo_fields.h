@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <iterator>
-
 #include "eyeslam/replay/field_walk.h"
 #include "eyeslam/replay/message_types.h"
 
@@ -83,18 +81,10 @@ struct Fields<operator_t> {
     walk.bytes("plan_hash", m.plan_hash);
     walk.number("zones", "", m.zones);
     walk.vector("zone_points", "", kZones, m.zone_points);
-    for (std::size_t zone = 0; zone < std::size(kZones); ++zone) {
-      walk.vector(kZoneX[zone], "", kCorners, m.zone_x_px[zone]);
-      walk.vector(kZoneY[zone], "", kCorners, m.zone_y_px[zone]);
-    }
+    walk.matrix("zone_x_px", kZones, kCorners, m.zone_x_px);
+    walk.matrix("zone_y_px", kZones, kCorners, m.zone_y_px);
     walk.bytes("tag", m.tag);
   }
-
- private:
-  static constexpr std::string_view kZoneX[] = {"zone_0_x_px", "zone_1_x_px", "zone_2_x_px", "zone_3_x_px",
-                                                "zone_4_x_px", "zone_5_x_px", "zone_6_x_px", "zone_7_x_px"};
-  static constexpr std::string_view kZoneY[] = {"zone_0_y_px", "zone_1_y_px", "zone_2_y_px", "zone_3_y_px",
-                                                "zone_4_y_px", "zone_5_y_px", "zone_6_y_px", "zone_7_y_px"};
 };
 
 }  // namespace eyeslam::replay

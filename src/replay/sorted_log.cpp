@@ -43,7 +43,7 @@ std::optional<SortedEvent> SortedLog::next()
   return current_->sorted;
 }
 
-// The middle of the first three times: the first alone may be wrong.
+// The first time alone may be wrong: the first of three that agrees with their middle is where the log begins.
 void SortedLog::findTheStart()
 {
   begun_ = true;
@@ -56,7 +56,8 @@ void SortedLog::findTheStart()
     utimes.push_back(event->utime);
   }
   if (first.empty()) return;
-  settled_.fill(middleOf(utimes));
+  const auto agrees = [middle = middleOf(utimes)](std::int64_t utime) { return distance(utime, middle) <= kJump_us; };
+  settled_.fill(*std::find_if(utimes.begin(), utimes.end(), agrees));
   for (Holder& held : first) place(std::move(held));
 }
 
