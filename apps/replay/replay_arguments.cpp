@@ -59,12 +59,14 @@ ReplayCommands addOptions(CLI::App& app, ReplayArguments& arguments)
   addPart(app, arguments);
   app.add_option("--csv", arguments.csv, "Write its messages as tables, one file a channel")->type_name("DIR");
   addLinkOptions(app, arguments.link);
-  app.get_option("--lcm")
-      ->description("Play it onto this LCM URL, '' = the default one")
-      ->each([&arguments](const std::string&) { arguments.plays = true; });
+  CLI::Option* link = app.get_option("--lcm");
+  link->description("Play it onto this LCM URL, '' = the default one");
+  link->each([&arguments](const std::string&) { arguments.plays = true; });
+  app.get_option("--key")->description("Lets it leave this computer: 64 hexadecimal digits")->needs(link);
   app.add_option("--speed", arguments.speed, "Of playing, times real time; default 1")
       ->type_name("X")
-      ->check(within(1e-3, 1e3));
+      ->check(within(1e-3, 1e3))
+      ->needs(link);
   app.add_flag("--quiet", arguments.quiet, "Print nothing but errors");
   return {addInfo(app, arguments), addCut(app, arguments)};
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 
 #include "eyeslam/files/file_error.h"
@@ -27,7 +28,9 @@ bool fits(std::uint64_t value) { return value <= std::uint64_t{std::numeric_limi
 
 LogReader::LogReader(const std::string& path) : stream_(path, std::ios::binary | std::ios::ate), buffer_(kChunk)
 {
-  if (!stream_) throw FileError(path + ": cannot be opened; an LCM log is wanted, as lcm-logger writes it");
+  std::error_code ignored;  // a folder can be opened, but not read
+  if (!stream_ || std::filesystem::is_directory(path, ignored))
+    throw FileError(path + ": cannot be opened; an LCM log is wanted, as lcm-logger writes it");
   size_ = std::max<std::int64_t>(0, stream_.tellg());
   stream_.seekg(0);
 }
