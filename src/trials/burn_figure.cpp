@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eyeslam/trials/burn_figure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "eyeslam/trials/aid_style.h"
+#include "eyeslam/trials/retina_panel.h"
+#include "eyeslam/trials/svg_canvas.h"
+#include "eyeslam/trials/svg_chart.h"
+
+namespace eyeslam::trials {
+
+namespace {
+
+constexpr double kWidth = 1080.0, kGap = 24.0, kTallest_px = 560.0;
+constexpr double kMargin = 200e-6, kLeast = 1.5e-3;  // m
+constexpr double kUsualBurn = 100e-6;                // m, where the plan does not say
+constexpr double kFar_um = 60.0, kBound_um = 30.0;   // rings; issue 17: farther is a far pulse
+constexpr const char* kMissedColour = "#cc79a7";
+
+Box regionOf(const std::vector<const TrialRecord*>& trials)
+{
+  Box region;
+  for (const TrialRecord* trial : trials) {
+    for (const PlannedTarget& target : trial->targets) region.extend(target.wanted);
+    for (const PulseRecord& pulse : trial->pulses) region.extend(pulse.spot);
+  }
+  if (region.isEmpty()) return region;
+  const Eigen::Vector2d margin(kMargin, kMargin);
+  return {region.min() - margin, region.max() + margin};
+}
+
+double diameterOf(const TrialRecord& trial, int id)
+{
+  for (const PlannedTarget& target : trial.targets)
+    if (target.id == id && target.burn > 0.0) return target.burn;
+  return kUsualBurn;
+}
+
+/// Letters for the reasons of all trials of a figure.
+std::map<std::string, char> lettersOf(const std::vector<const TrialRecord*>& trials)
+{
+  std::map<std::string, char> letters;
+  for (const TrialRecord* trial : trials)
+    for (const PlannedTarget& target : trial->targets)
+      if (!target.reason.empty()) letters[target.reason] = 'a';
+  char letter = 'a';
+  for (auto& [reason, given] : letters) given = letter == 'z' ? letter : letter++;
+  return letters;
+}
+
+void drawTarget(const PlannedTarget& target, const std::map<std::string, char>& letters, const RetinaPanel& panel,
+                SvgCanvas& canvas)
+{
+  const Eigen::Vector2d at = panel.place(target.wanted);
+  const double radius = std::max(2.0, 0.5 * target.burn * panel.pxPerMetre());
+  const std::string tooltip = fmt::format("target {}: {} {}", target.id, target.fate, target.reason);
+  const Paint ring = target.fate == "missed"    ? Paint::line(kMissedColour, 2.2)
+                     : target.fate == "pending" ? Paint::dashed("#333", 1.2, "2 2")
+                     : target.fate == "refused" ? Paint::line("#555", 1.0)
+                                                : Paint::line("#111", 1.0);
+  canvas.circle(at, radius, ring, tooltip);
+  if (target.fate != "missed" && target.fate != "refused") return;
+  const double arm = 0.7 * radius;
+  canvas.line(at - Eigen::Vector2d(arm, arm), at + Eigen::Vector2d(arm, arm), ring);
+  canvas.line(at - Eigen::Vector2d(arm, -arm), at + Eigen::Vector2d(arm, -arm), ring);
+  const auto letter = letters.find(target.reason);
+  if (letter == letters.end()) return;
+  Lettering lettering{11.0};
+  lettering.halo = true;
+  canvas.text(at + Eigen::Vector2d(radius + 1.5, -0.4 * radius), std::string(1, letter->second), lettering);
+}
+
+void drawPulse(const TrialRecord& trial, const PulseRecord& pulse, const RetinaPanel& panel, SvgCanvas& canvas)
+{
+  const Eigen::Vector2d at = panel.place(pulse.spot);
+  const double radius = std::max(2.0, 0.5 * diameterOf(trial, pulse.target) * panel.pxPerMetre());
+  const std::string tooltip = fmt::format("burn of target {}: {:.1f} um off, {:.0f} um from the nearest vessel",
+                                          pulse.target, 1e6 * pulse.placement, 1e6 * pulse.clearance);
+  canvas.circle(at, radius, Paint::area(styleOf(trial.score.aid).colour, 0.55), tooltip);
+  if (pulse.touched_calibre > 0.0) canvas.circle(at, radius, Paint::line("#000", 2.2), tooltip);
+  if (pulse.far) canvas.line(panel.place(pulse.wanted), at, Paint::line("#000", 1.6));
+}
+
+void drawPanel(const TrialRecord& trial, const RetinaBackground& background, const Box& plot, const Box& region,
+               char letter, SvgCanvas& canvas)
+{
+  RetinaPanel panel(canvas, plot, region);
+  panel.begin(background);
+  const std::map<std::string, char> letters = lettersOf({&trial});
+  for (const PulseRecord& pulse : trial.pulses) drawPulse(trial, pulse, panel, canvas);
+  for (const PlannedTarget& target : trial.targets) drawTarget(target, letters, panel, canvas);
+  std::string title = fmt::format("{}  {}", letter, styleOf(trial.score.aid).name);
+  if (trial.score.placement_mean_um)
+    title += fmt::format(": {:.3g} \u00b5m off on average", *trial.score.placement_mean_um);
+  panel.finish(title);
+  double y = plot.max().y() + 18.0;
+  for (const auto& [reason, given] : letters) {
+    const auto count = std::count_if(trial.targets.begin(), trial.targets.end(),
+                                     [&r = reason](const PlannedTarget& target) { return target.reason == r; });
+    canvas.text({plot.min().x(), y}, fmt::format("{}  {} ({})", given, reason, count), {11.5});
+    y += 15.0;
+  }
+}
+
+void drawLegend(const std::vector<const TrialRecord*>& trials, double margin, double y, SvgCanvas& canvas)
+{
+  double x = 8.0;
+  const auto add = [&](const std::string& words, auto draw) {
+    draw(Eigen::Vector2d(x, y - 4.0));
+    canvas.text({x + 13.0, y}, words, {12.0});
+    x += 13.0 + widthOf(words, 12.0) + 24.0;
+  };
+  const auto ring = [&](const Paint& paint) { return [&canvas, paint](auto at) { canvas.circle(at, 7.0, paint); }; };
+  const auto crossed = [&](const Paint& paint) {
+    return [&canvas, paint](auto at) {
+      canvas.circle(at, 7.0, paint);
+      canvas.line(at - Eigen::Vector2d(5, 5), at + Eigen::Vector2d(5, 5), paint);
+      canvas.line(at - Eigen::Vector2d(5, -5), at + Eigen::Vector2d(5, -5), paint);
+    };
+  };
+  add("target", ring(Paint::line("#111", 1.0)));
+  for (const TrialRecord* trial : trials)
+    add("burn, " + styleOf(trial->score.aid).name, ring(Paint::area(styleOf(trial->score.aid).colour, 0.55)));
+  add("touches a true vessel", ring(Paint::line("#000", 2.2)));
+  add("refused", crossed(Paint::line("#555", 1.0)));
+  add("missed", crossed(Paint::line(kMissedColour, 2.2)));
+  add("not reached", ring(Paint::dashed("#333", 1.2, "2 2")));
+  if (margin > 0.0)
+    add(fmt::format("{:.0f} \u00b5m from vessels", 1e6 * margin), [&](auto at) {
+      canvas.line(at - Eigen::Vector2d(8, 0), at + Eigen::Vector2d(8, 0), Paint::dashed("#222", 1.0, "4 3"));
+    });
+}
+
+std::vector<Eigen::Vector2d> offsetsOf(const std::vector<const TrialRecord*>& trials)
+{
+  std::vector<Eigen::Vector2d> offsets;
+  for (const TrialRecord* trial : trials)
+    for (const PulseRecord& pulse : trial->pulses) offsets.emplace_back(1e6 * (pulse.spot - pulse.wanted));
+  return offsets;
+}
+
+void drawOffsets(const std::vector<Eigen::Vector2d>& offsets, const std::string& aid, const Box& plot, double range,
+                 SvgCanvas& canvas)
+{
+  const AidStyle style = styleOf(aid);
+  SvgChart chart(canvas, plot, {"x from the target (\u00b5m)", -range, range},
+                 {"y from the target, up (\u00b5m)", -range, range});
+  chart.title(fmt::format("{}, {} burns", style.name, offsets.size()));
+  chart.axes();
+  const double px = chart.place(1.0, 0.0).x() - chart.place(0.0, 0.0).x();
+  canvas.clip(plot);
+  for (const double ring : {kBound_um, kFar_um, 2.0 * kFar_um, 4.0 * kFar_um})
+    if (ring < range) chart.dot(0.0, 0.0, ring * px, ring == kFar_um ? Paint::line("#333", 1.2) : Paint::line("#aaa"));
+  // The image's y points down.
+  for (const Eigen::Vector2d& offset : offsets) chart.dot(offset.x(), -offset.y(), 2.6, Paint::area(style.colour, 0.6));
+  canvas.unclip();
+}
+
+}  // namespace
+
+std::string burnFigure(const std::vector<const TrialRecord*>& trials, double margin, const std::string& name)
+{
+  const auto columns = static_cast<double>(trials.size());
+  const double width = trials.size() == 1 ? 760.0 : (kWidth - kGap * (columns - 1.0)) / columns;
+  Box region = regionOf(trials);
+  const double shape = region.isEmpty() ? 1.4 : region.sizes().x() / region.sizes().y();
+  const double height = std::min(kTallest_px, width / std::max(shape, 0.8));
+  region = grownTo(region, width / height, kLeast);
+  std::size_t reasons = 0;
+  for (const TrialRecord* trial : trials) reasons = std::max(reasons, lettersOf({trial}).size());
+  const double legend = 24.0 + height + 15.0 * static_cast<double>(reasons) + 34.0;
+  SvgCanvas canvas(kWidth, legend + 10.0, "burns over the retina");
+  const RetinaBackground background(trials.front()->retina, region, margin, name);
+  if (!background.empty()) canvas.insert(background.definition());
+  for (std::size_t i = 0; i < trials.size(); ++i)
+    drawPanel(*trials[i], background, boxAt(static_cast<double>(i) * (width + kGap), 24.0, width, height), region,
+              static_cast<char>('a' + static_cast<char>(i)), canvas);
+  drawLegend(trials, margin, legend, canvas);
+  return canvas.svg();
+}
+
+std::string placementFigure(const std::vector<std::vector<const TrialRecord*>>& aids)
+{
+  constexpr double kSide = 320.0, kLeft = 64.0;
+  SvgCanvas canvas(kWidth, kSide + 84.0, "burns as seen from their targets");
+  double range = 1.25 * kFar_um;
+  std::vector<std::vector<Eigen::Vector2d>> offsets;
+  for (const auto& trials : aids) {
+    offsets.push_back(offsetsOf(trials));
+    for (const Eigen::Vector2d& offset : offsets.back()) range = std::max(range, 1.08 * offset.norm());
+  }
+  for (std::size_t i = 0; i < aids.size() && i < 2; ++i) {
+    if (aids[i].empty()) continue;
+    const Box plot = boxAt(kLeft + static_cast<double>(i) * (kSide + 2.0 * kLeft), 30.0, kSide, kSide);
+    drawOffsets(offsets[i], aids[i].front()->score.aid, plot, range, canvas);
+  }
+  return canvas.svg();
+}
+
+}  // namespace eyeslam::trials

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "eyeslam/trials/report_page.h"
+#include "eyeslam/trials/study_groups.h"
+#include "eyeslam/trials/trial_record.h"
+
+namespace eyeslam::trials {
+
+/// What is said of a trial first.
+std::vector<Headline> headlinesOf(const TrialRecord& record);
+/// Every score of a trial that applies, with its name in results.csv.
+ReportTable scoreTable(const TrialScore& score);
+ReportTable eventTable(const std::vector<TrialEvent>& events);
+/// What became of the targets, by reason.
+ReportTable targetTable(const TrialRecord& record);
+
+/// Mean and spread over seeds, a row an aid.
+ReportTable aidTable(const StudyGroup& group);
+/// What each aid changes, with 95 % intervals.
+ReportTable comparisonTable(const std::vector<AidComparison>& comparisons);
+/// A row a trial.
+ReportTable trialTable(const std::vector<TrialRecord>& records);
+/// Burns that touch a true vessel, by its calibre.
+ReportTable touchTable(const StudyGroup& group);
+/// Beside what was published by others; empty where nothing of the kind was.
+ReportTable publishedTable(const StudyGroup& group, const std::vector<AidComparison>& comparisons);
+
+/// "92.1 % (90.8 to 93.2)"
+std::string percentWithInterval(const Estimate& estimate);
+
+}  // namespace eyeslam::trials

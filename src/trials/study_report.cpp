@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "eyeslam/trials/aid_style.h"
+#include "eyeslam/trials/burn_figure.h"
+#include "eyeslam/trials/error_charts.h"
+#include "eyeslam/trials/report_notes.h"
+#include "eyeslam/trials/report_page.h"
+#include "eyeslam/trials/report_sections.h"
+#include "eyeslam/trials/report_tables.h"
+#include "eyeslam/trials/report_warnings.h"
+#include "eyeslam/trials/study_groups.h"
+#include "eyeslam/trials/trial_report.h"
+
+namespace eyeslam::trials {
+
+namespace {
+
+constexpr std::size_t kSideBySide = 2;
+
+std::vector<Headline> headlinesOf(const StudyGroup& group, const std::vector<AidComparison>& comparisons)
+{
+  std::vector<Headline> headlines;
+  const std::string& strongest = group.aids.back().aid;
+  for (const AidComparison& comparison : comparisons) {
+    if (comparison.aid != strongest || comparison.figures.pairs == 0) continue;
+    const Estimate& reduction = comparison.figures.reduction_percent;
+    headlines.push_back(
+        {fmt::format("\u2212{:.1f}", reduction.value), "%",
+         fmt::format("{} with {} (95 % CI {:.1f} to {:.1f}, {} seeds)", comparison.measure.name,
+                     styleOf(strongest).name, reduction.low, reduction.high, comparison.figures.pairs)});
+  }
+  for (const AidComparison& comparison : comparisons)
+    if (comparison.aid == strongest && comparison.measure.name == measuresOf(group.task).front().name)
+      headlines.push_back({fmt::format("{:.1f}", comparison.figures.aided.mean), "\u00b5m",
+                           fmt::format("{}, mean of seeds; without aid {:.0f} \u00b5m", comparison.measure.name,
+                                       comparison.figures.unaided.mean)});
+  return headlines;
+}
+
+/// The trials of a seed that are shown side by side: the unaided, and the strongest aid.
+std::vector<const TrialRecord*> sideBySide(const StudyGroup& group, std::uint64_t seed)
+{
+  std::vector<const TrialRecord*> shown;
+  const AidTrials* unaided = group.unaided();
+  if (unaided != nullptr && group.aids.size() >= kSideBySide && unaided->ofSeed(seed) != nullptr)
+    shown.push_back(unaided->ofSeed(seed));
+  const TrialRecord* aided = group.aids.back().ofSeed(seed);
+  if (aided != nullptr && (shown.empty() || shown.front() != aided)) shown.push_back(aided);
+  return shown;
+}
+
+void addExamples(const StudyGroup& group, const std::string& name, ReportPage& page)
+{
+  const Examples examples = examplesOf(group.aids.back());
+  const std::string aid = styleOf(group.aids.back().aid).name;
+  if (examples.median == nullptr) {
+    if (!group.aids.back().trials.empty()) addPictures({group.aids.back().trials.front()}, name + "_first", page);
+    return;
+  }
+  page.paragraph(fmt::format("Median seed by {} with {}: {}.", measuresOf(group.task).front().name, aid,
+                             examples.median->score.seed));
+  addPictures(sideBySide(group, examples.median->score.seed), name + "_median", page);
+  if (examples.worst == examples.median) return;
+  page.paragraph(fmt::format("Worst seed: {}.", examples.worst->score.seed));
+  addPictures(sideBySide(group, examples.worst->score.seed), name + "_worst", page);
+}
+
+std::vector<const TrialRecord*> aidedTrials(const StudyGroup& group)
+{
+  std::vector<const TrialRecord*> trials;
+  for (const AidTrials& aid : group.aids)
+    if (!isUnaided(aid.aid)) trials.insert(trials.end(), aid.trials.begin(), aid.trials.end());
+  return trials;
+}
+
+std::string titleOf(const StudyGroup& group)
+{
+  return group.scenario + (group.variant.empty() ? "" : ", " + group.variant);
+}
+
+void addStatistics(const StudyGroup& group, const std::vector<AidComparison>& comparisons, ReportPage& page)
+{
+  page.table(aidTable(group), "Mean \u00b1 standard deviation over seeds.");
+  page.table(
+      comparisonTable(comparisons),
+      "Paired comparison over seeds: reduction of the mean, with the 95 % interval of a percentile bootstrap over "
+      "seeds (4000 resamples).");
+  page.figure(overSeedsFigure(group),
+              "A dot a trial, lines join one seed; circle and bar: mean with its 95 % bootstrap interval.");
+  page.figure(errorDistribution(group.aids),
+              "Share of errors below each size: thick over all seeds, thin of each seed.");
+  if (group.task != "laser") return;
+  std::vector<std::vector<const TrialRecord*>> shown{group.aids.front().trials};
+  if (group.aids.size() > 1) shown.push_back(group.aids.back().trials);
+  page.figure(placementFigure(shown),
+              "All burns as seen from their targets. Rings: 30, 60 (black), 120 \u00b5m; farther than 60 \u00b5m "
+              "counts as far.");
+  page.table(touchTable(group), "Share of burns that touch a true vessel, by the calibre of the widest.");
+}
+
+void addGroup(const StudyGroup& group, const std::string& name, ReportPage& page)
+{
+  const std::vector<AidComparison> comparisons = comparisonsOf(group);
+  page.section(titleOf(group));
+  if (group.aids.size() > 1 || group.aids.back().trials.size() > 1) page.headlines(headlinesOf(group, comparisons));
+  const AidTrials& first = group.unaided() != nullptr ? *group.unaided() : group.aids.front();
+  if (!first.trials.empty()) page.note(operatorNote(*first.trials.front()));
+  addStatistics(group, comparisons, page);
+  page.table(publishedTable(group, comparisons),
+             "Beside published figures: of other experiments, eyes and judges, so they tell the size to expect.");
+  addExamples(group, name, page);
+  const std::vector<const TrialRecord*> aided = aidedTrials(group);
+  if (!aided.empty()) addLatencies(aided, page);
+}
+
+void addOrigin(const std::vector<TrialRecord>& records, ReportPage& page)
+{
+  page.section("Trials and configuration");
+  page.foldedTable(fmt::format("All {} trials", records.size()), trialTable(records));
+  std::set<std::string> shown, versions;
+  for (const TrialRecord& record : records) {
+    versions.insert(record.score.version);
+    if (!shown.insert(record.score.scenario + "\n" + record.variant).second) continue;
+    page.folded(fmt::format("{}{}{}: every option, as YAML ({})", record.score.scenario,
+                            record.variant.empty() ? "" : ", ", record.variant, record.score.config_hash),
+                record.configuration);
+  }
+  std::string text;
+  for (const std::string& version : versions) text += (text.empty() ? "" : ", ") + version;
+  page.paragraph("Version " + text + ".");
+}
+
+}  // namespace
+
+std::string studyReport(const std::vector<TrialRecord>& records)
+{
+  const std::vector<StudyGroup> groups = groupsOf(records);
+  std::string title;
+  for (const StudyGroup& group : groups)
+    if (title.find(group.scenario) == std::string::npos) title += (title.empty() ? "" : ", ") + group.scenario;
+  ReportPage page(title.empty() ? "No trials" : title, fmt::format("{} trials", records.size()));
+  page.warnings(warningsOf(records, groups));
+  page.note(truthNote());
+  int number = 0;
+  for (const StudyGroup& group : groups) addGroup(group, fmt::format("retina_{}", ++number), page);
+  if (!records.empty()) addOrigin(records, page);
+  return page.html();
+}
+
+}  // namespace eyeslam::trials
