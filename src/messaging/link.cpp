@@ -90,6 +90,7 @@ Link::Link(const std::string& url, std::int64_t session, const std::optional<Key
 {
   check(url_, key.has_value());
   if (key) authenticator_.emplace(*key);
+  if (startsWith(url_, "file://")) file_ = std::make_unique<std::mutex>();
   lcm_ = std::make_unique<lcm::LCM>(withReceiveBuffer(url_));
   // A multicast link is not asked for its descriptor, which would start a receiver; others say good() without a peer.
   if (!lcm_->good() || (!isMulticast(url_) && lcm_->getFileno() < 0)) {
@@ -103,6 +104,7 @@ Link::~Link() = default;
 
 bool Link::send(const std::string& channel, const std::uint8_t* bytes, std::size_t size)
 {
+  const auto writing = file_ ? std::unique_lock(*file_) : std::unique_lock<std::mutex>();
   return lcm_->publish(channel, bytes, static_cast<unsigned int>(size)) == 0;
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -76,7 +77,8 @@ class Link {
   std::int64_t session_;
   std::optional<Authenticator> authenticator_;
   std::unique_ptr<lcm::LCM> lcm_;
-  std::optional<ReceiveTime> now_;  // none in lock step
+  std::unique_ptr<std::mutex> file_;  // of file:// alone: LCM guards its sockets itself, but not its files
+  std::optional<ReceiveTime> now_;    // none in lock step
 };
 
 /// Publishes one type on one channel: fills what every message has (contracts, section 4), encodes and signs it.

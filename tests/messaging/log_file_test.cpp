@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <thread>
 #include <vector>
 
 #include "eyeslam/messaging/micron_messages.h"
@@ -78,6 +79,29 @@ TEST_F(LogFile, OfAnotherKeyIsNotBelieved)
   while (link.step()) continue;
   EXPECT_EQ(states.accepted(), 0);
   EXPECT_EQ(states.refused(retina::Reason::unauthenticated), 1000);
+}
+
+// LCM's own writer lets the events of two threads run into each other.
+TEST_F(LogFile, IsWrittenWholeBySeveralThreads)
+{
+  constexpr int kEach = 40'000;
+  {
+    Link link("file://" + path_ + "?mode=w", 7, {});
+    std::thread other([&link] {
+      Publisher<mark_t> marks(link);
+      mark_t mark{};
+      for (int i = 0; i < kEach; ++i) marks.publish(mark, kUtime + i);
+    });
+    Publisher<micron_state_t> states(link);
+    for (int i = 0; i < kEach; ++i) states.publish(MicronState{}, kUtime + i, kUtime + i);
+    other.join();
+  }
+  Link link("file://" + path_ + "?speed=0", 1, {});
+  Subscription<micron_state_t> states(link);
+  Subscription<mark_t> marks(link);
+  while (link.step()) continue;
+  EXPECT_EQ(states.received(), kEach);
+  EXPECT_EQ(marks.received(), kEach);
 }
 
 TEST_F(LogFile, ThatDoesNotExistIsRefusedByName)
