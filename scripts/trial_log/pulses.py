@@ -88,8 +88,8 @@ def _place(log, plans, truth, pulse):
     if target is None or truth.image_centre is None:
         return
     place_px = float(target["x_px"]), float(target["y_px"])
-    if plans.by_hand:  # its map is the true one, and it sees what is
-        place, newest = np.array(place_px) * truth.m_per_px(), pulse.begin
+    if plans.by_hand:  # its map is the true one, and it sees what the camera would
+        place, newest = np.array(place_px) * truth.m_per_px(), int(log.truth["frame_utime"][pulse.first])
     else:
         place, newest = _by_frames(log, truth, pulse, plans.messages[pulse.plan]["map_id"], place_px)
     if place is None:

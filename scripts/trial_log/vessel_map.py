@@ -43,7 +43,8 @@ class VesselMap:
     def clearance_um(self, rank, place_px, burn_um, um_per_px, within_um):
         """From the burn's edge to the nearest vessel's, in the map as it was known then; `within_um` where it is not
         nearer, not a number where there is no map."""
-        if self.grid is None:
+        numbers = (*place_px, burn_um, um_per_px, within_um)
+        if self.grid is None or not all(map(math.isfinite, numbers)) or not um_per_px > 0 or not 0 <= burn_um + within_um < 1e5:
             return math.nan
         self._take(rank)
         if self.next == 0:
