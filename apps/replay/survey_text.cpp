@@ -21,14 +21,6 @@ const char* const kKinds[] = {"start", "stop", "note"};  // as in mark_t
 double seconds(std::int64_t us) { return 1e-6 * static_cast<double>(us); }
 double milliseconds(std::int64_t us) { return 1e-3 * static_cast<double>(us); }
 
-// Names and notes come from the log: they shall not steer the terminal.
-std::string printable(std::string text)
-{
-  const auto steers = [](char letter) { return static_cast<unsigned char>(letter) < 32 || letter == 127; };
-  std::replace_if(text.begin(), text.end(), steers, '?');
-  return text;
-}
-
 std::string dateText(std::int64_t utime)
 {
   const std::time_t time = static_cast<std::time_t>(utime / 1'000'000);
@@ -134,6 +126,13 @@ std::string marksText(const LogSurvey& survey)
 }
 
 }  // namespace
+
+std::string printable(std::string text)
+{
+  const auto steers = [](char letter) { return static_cast<unsigned char>(letter) < 32 || letter == 127; };
+  std::replace_if(text.begin(), text.end(), steers, '?');
+  return text;
+}
 
 std::string surveyText(const LogSurvey& survey, const std::string& path)
 {

@@ -7,6 +7,9 @@
 
 namespace eyeslam::apps {
 
+/// Names and notes that come from a log, without what would steer a terminal.
+std::string printable(std::string text);
+
 /// For people: a head, a line a channel, then what is wrong, then the MARKs.
 std::string surveyText(const replay::LogSurvey& survey, const std::string& path);
 

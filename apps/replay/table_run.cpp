@@ -9,18 +9,23 @@
 #include "eyeslam/replay/log_survey.h"
 #include "eyeslam/replay/message_tables.h"
 #include "replay/log_pass.h"
+#include "replay/survey_text.h"
 
 namespace eyeslam::apps {
 namespace {
 
 void report(const replay::TableCounts& counts)
 {
-  std::string left_out;
-  if (counts.changed_type > 0) left_out += fmt::format(", {} left out: another type", counts.changed_type);
-  if (counts.undecodable > 0) left_out += fmt::format(", {} left out: not whole", counts.undecodable);
-  if (counts.foreign > 0) left_out += fmt::format(", {} left out: not ours", counts.foreign);
-  fmt::print("  {:<24} {} rows{}\n", counts.file.empty() ? "-" : counts.file, counts.rows,
-             counts.file.empty() ? fmt::format(" of {}{}", counts.channel, left_out) : left_out);
+  std::string text = counts.file.empty() ? fmt::format("  {:<24} no table", counts.channel)
+                                         : fmt::format("  {:<24} {} rows", counts.file, counts.rows);
+  const auto leftOut = [&text](std::int64_t messages, const char* why) {
+    if (messages > 0) text += fmt::format(", {} left out: {}", messages, why);
+  };
+  leftOut(counts.changed_type, "another type");
+  leftOut(counts.undecodable, "not whole");
+  leftOut(counts.foreign, "not ours");
+  // A channel may hold any bytes: they shall not steer the terminal.
+  fmt::print("{}\n", printable(text));
 }
 
 void complain(const replay::TableCounts& counts)
