@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <random>
 #include <set>
@@ -269,6 +270,16 @@ TYPED_TEST(TableOf, HoldsEveryFieldOfTheDeclarationExactly)
     EXPECT_EQ(lines[i + 1][1], fmt::format("{:.6f}", 0.0015 * static_cast<double>(i)));
   }
   EXPECT_EQ(std::set<std::string>(lines[0].begin(), lines[0].end()).size(), lines[0].size()) << "a name twice";
+}
+
+TEST(MessageTypes, AreAllThatLcmtypesDeclares)
+{
+  std::set<std::string> declared, listed = {burn_target_t::getTypeName()};  // of burn_plan_t, never sent alone
+  for (const auto& entry : std::filesystem::directory_iterator(EYESLAM_LCMTYPES)) {
+    if (entry.path().extension() == ".lcm") declared.insert(entry.path().stem().string());
+  }
+  for (const MessageType& type : messageTypes()) listed.insert(type.name);
+  EXPECT_EQ(listed, declared);
 }
 
 TEST_F(Tables, NameUnitsThatTheFieldsThemselvesDoNot)
