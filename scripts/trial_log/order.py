@@ -2,6 +2,8 @@
 """What a log must be before it proves anything: whole, of known types, in order, with the truth in each millisecond."""
 import numpy as np
 
+from trial_log.trial_log import OTHER_CLOCK_us
+
 LONGEST_GAP_us = 2500  # between two TRUTH, which come each millisecond
 
 
@@ -48,11 +50,14 @@ def _groups(name, channel):
 
 
 def _senders(log, findings, name, channel):
+    """Where the trial sets the hardware's clock, as its fault says, a second there and back is no message out of order."""
     if not len(channel):
         return
+    set_back = log.settings.get("fault.kind") == "clock_step" and name in ("MICRON_STATE", "LASER_STATE")
     sent, seq = np.asarray(channel["utime_sent"]), np.asarray(channel["seq"])
     for group in _groups(name, channel):
-        back = np.flatnonzero((np.diff(sent[group]) < 0) | (np.diff(seq[group]) <= 0))
+        step = np.diff(sent[group])
+        back = np.flatnonzero(((step < 0) & ~(set_back & (step < -OTHER_CLOCK_us))) | (np.diff(seq[group]) <= 0))
         findings.add_all("sender_time", log, channel.time[group[back + 1]],
                          lambda i, g=group, b=back: f"{name} {seq[g[b[i] + 1]]} after {seq[g[b[i]]]}")
     later = np.flatnonzero(np.asarray(channel["utime"]) > sent)

@@ -95,6 +95,14 @@ class CheckTrialLog(unittest.TestCase):
             self.assertEqual(self.rules(trial), rules)
             self.assertEqual(self.rules(trial, reaction_ms=last - FIRST - 4), [])
 
+    def test_a_clock_that_the_trial_sets_is_no_disorder(self):
+        for fault, rules in (("", ["sender_time"]), ("fault:\n  kind: clock_step\n", [])):
+            trial = Trial(TYPES)
+            trial.of("MARK")[0].configuration += fault
+            for state in trial.of("MICRON_STATE", 900, 950):
+                state.utime, state.utime_sent = state.utime + 1_000_000, state.utime_sent + 1_000_000
+            self.assertEqual(self.rules(trial), rules)
+
     def test_a_pulse_by_hand_needs_no_servo_and_no_explanation(self):
         trial = Trial(TYPES)
         trial.of("MARK")[0].configuration = trial_log_case.CONFIGURATION.replace("automated", "manual")
