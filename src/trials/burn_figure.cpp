@@ -94,7 +94,7 @@ void drawPanel(const TrialRecord& trial, const RetinaBackground& background, con
   const std::map<std::string, char> letters = lettersOf({&trial});
   for (const PulseRecord& pulse : trial.pulses) drawPulse(trial, pulse, panel, canvas);
   for (const PlannedTarget& target : trial.targets) drawTarget(target, letters, panel, canvas);
-  std::string title = fmt::format("{}  {}", letter, styleOf(trial.score.aid).name);
+  std::string title = fmt::format("{}\u00a0 {}", letter, styleOf(trial.score.aid).name);
   if (trial.score.placement_mean_um)
     title += fmt::format(": {:.3g} \u00b5m off on average", *trial.score.placement_mean_um);
   panel.finish(title);
@@ -102,7 +102,7 @@ void drawPanel(const TrialRecord& trial, const RetinaBackground& background, con
   for (const auto& [reason, given] : letters) {
     const auto count = std::count_if(trial.targets.begin(), trial.targets.end(),
                                      [&r = reason](const PlannedTarget& target) { return target.reason == r; });
-    canvas.text({plot.min().x(), y}, fmt::format("{}  {} ({})", given, reason, count), {11.5});
+    canvas.text({plot.min().x(), y}, fmt::format("{}\u00a0 {} ({})", given, reason, count), {11.5});
     y += 15.0;
   }
 }

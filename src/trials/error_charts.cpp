@@ -221,12 +221,12 @@ std::string errorOverTime(const std::vector<const TrialRecord*>& trials)
 {
   const bool several = trials.size() > 1;
   SvgCanvas canvas(kWidth, several ? 560.0 : 300.0, "error over time");
-  const double width = kWidth - kLeft - 8.0;
+  const double width = kWidth - kLeft - 16.0;
   drawOverTime(trials, boxAt(kLeft, 30.0, width, several ? 210.0 : 220.0),
-               several ? "a  all, in one scale" : "error of the tip", canvas);
+               several ? "a\u00a0 all, in one scale" : "error of the tip", canvas);
   if (several)
     drawOverTime({trials.back()}, boxAt(kLeft, 310.0, width, 200.0),
-                 "b  " + styleOf(trials.back()->score.aid).name + " alone", canvas);
+                 "b\u00a0 " + styleOf(trials.back()->score.aid).name + " alone", canvas);
   return canvas.svg();
 }
 
@@ -242,7 +242,7 @@ std::string errorDistribution(const std::vector<AidTrials>& aids)
     least = std::min(least, std::max(0.1, pooled.back()[pooled.back().size() / 100]));
     greatest = std::max(greatest, pooled.back().back());
   }
-  SvgChart chart(canvas, boxAt(kLeft, 30.0, kWidth - kLeft - 8.0, 300.0),
+  SvgChart chart(canvas, boxAt(kLeft, 30.0, kWidth - kLeft - 16.0, 300.0),
                  Axis::decades("error (\u00b5m), logarithmic", std::min(least, greatest), greatest),
                  {"smaller than that (%)", 0.0, 100.0});
   chart.axes();

@@ -23,24 +23,24 @@ p { margin: 8px 0; max-width: 82ch; }
   margin: 16px 0; border-radius: 3px; overflow-wrap: anywhere; }
 .warnings strong { color: #a31515; }
 .warnings ul { margin: 6px 0 0; padding-left: 20px; }
-.fine { border-left: 6px solid #2e7d32; background: #f2f8f2; padding: 8px 16px; margin: 16px 0; border-radius: 3px; }
 .note { border-left: 4px solid #b58900; background: #fdf9ec; padding: 8px 14px; margin: 12px 0; max-width: none;
   font-size: 14px; }
-.headlines { display: flex; flex-wrap: wrap; gap: 12px; margin: 18px 0; }
-.headlines div { flex: 1 1 130px; border: 1px solid #dcdcdc; border-radius: 4px; padding: 10px 14px; }
+.headlines { display: grid; grid-template-columns: repeat(auto-fit, minmax(150px, 1fr)); gap: 12px; margin: 18px 0; }
+.headlines div { border: 1px solid #dcdcdc; border-radius: 4px; padding: 10px 14px; }
 .headlines b { display: block; font-size: 24px; font-weight: 600; line-height: 1.2; white-space: nowrap; }
 .headlines b small { font-size: 14px; font-weight: 400; color: #555; }
 .headlines span { color: #555; font-size: 13px; }
 figure { margin: 22px 0; break-inside: avoid; }
-figure svg { display: block; max-width: 100%; height: auto; font-family: inherit; }
+figure svg { display: block; max-width: 100%; height: auto; font-family: inherit; overflow: visible; }
+figure svg svg { overflow: hidden; }
 figcaption, caption { font-size: 13.5px; color: #333; text-align: left; max-width: 100ch; }
 figcaption { margin-top: 8px; }
 caption { caption-side: top; padding-bottom: 6px; }
 .wide { overflow-x: auto; margin: 18px 0; break-inside: avoid; }
 table { border-collapse: collapse; font-size: 13.5px; font-variant-numeric: tabular-nums; }
 th, td { padding: 4px 12px 4px 0; text-align: right; white-space: nowrap; }
-th:first-child, td:first-child, .words th, .words td { text-align: left; }
-.words td { white-space: normal; overflow-wrap: anywhere; }
+th.words, td.words { text-align: left; }
+td.words { white-space: normal; }
 th { font-weight: 600; border-bottom: 1px solid #333; border-top: 1px solid #333; vertical-align: bottom; }
 td { border-bottom: 1px solid #ececec; }
 tbody tr:last-child td { border-bottom: 1px solid #333; }
@@ -51,19 +51,20 @@ pre { font: 12.5px/1.45 "DejaVu Sans Mono", Menlo, Consolas, monospace; backgrou
 @media print { main { max-width: none; padding: 0; } body { font-size: 11pt; } .wide { overflow: visible; } }
 )css";
 
-std::string rowOf(const std::vector<std::string>& cells, const std::string& element)
+std::string rowOf(const std::vector<std::string>& cells, std::size_t words, const std::string& element)
 {
   std::string row = "<tr>";
-  for (const std::string& cell : cells) row += fmt::format("<{0}>{1}</{0}>", element, escaped(cell));
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    row += fmt::format("<{0}{1}>{2}</{0}>", element, i < words ? " class=\"words\"" : "", escaped(cells[i]));
   return row + "</tr>\n";
 }
 
 std::string written(const ReportTable& table, const std::string& caption)
 {
-  std::string html = fmt::format("<div class=\"wide\"><table{}>\n", table.words ? " class=\"words\"" : "");
+  std::string html = "<div class=\"wide\"><table>\n";
   if (!caption.empty()) html += fmt::format("<caption>{}</caption>\n", caption);
-  html += "<thead>" + rowOf(table.names, "th") + "</thead>\n<tbody>\n";
-  for (const std::vector<std::string>& row : table.rows) html += rowOf(row, "td");
+  html += "<thead>" + rowOf(table.names, table.words, "th") + "</thead>\n<tbody>\n";
+  for (const std::vector<std::string>& row : table.rows) html += rowOf(row, table.words, "td");
   return html + "</tbody></table></div>\n";
 }
 

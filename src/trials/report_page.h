@@ -6,11 +6,11 @@
 
 namespace eyeslam::trials {
 
-/// Rows of text under a row of names. The first column stands left, the others, being numbers, right.
+/// Rows of text under a row of names.
 struct ReportTable {
   std::vector<std::string> names;
   std::vector<std::vector<std::string>> rows;
-  bool words = false;  ///< all columns left
+  std::size_t words = 1;  ///< so many columns stand left; the others, being numbers, right
 };
 
 /// A figure that is said first.

@@ -35,7 +35,8 @@ void addPictures(const std::vector<const TrialRecord*>& trials, const std::strin
   }
   page.figure(
       traceFigure(trials, name),
-      fmt::format("Way of the tip over the true retina, seed {}. The square in the overview is the close-up.", seed));
+      fmt::format("Way of the tip over the true retina, seed {}. The rectangle in the overview is the close-up.",
+                  seed));
   page.figure(
       errorOverTime(trials),
       fmt::format("Error of the tip over time, seed {}: from the least to the greatest of each column, and its RMS "

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
@@ -18,11 +18,7 @@ namespace {
 
 constexpr const char* kNothing = "\u2013";
 
-template <class Value>
-std::string cell(const std::optional<Value>& value, const char* format = "{:.3g}")
-{
-  return value ? fmt::format(fmt::runtime(format), *value) : kNothing;
-}
+std::string cell(const std::optional<double>& value) { return value ? fmt::format("{:.4g}", *value) : kNothing; }
 
 void addHeadline(std::vector<Headline>& headlines, const std::optional<double>& value, const char* format,
                  const std::string& unit, const std::string& name)
@@ -32,8 +28,7 @@ void addHeadline(std::vector<Headline>& headlines, const std::optional<double>& 
 
 struct Column {
   std::string name;
-  std::function<std::optional<double>(const TrialScore&)> of;
-  const char* format = "{:.3g}";
+  std::optional<double> (*of)(const TrialScore&);
 };
 
 std::optional<double> percent(const std::optional<double>& share)
@@ -45,35 +40,47 @@ std::optional<double> number(const std::optional<std::int64_t>& count)
   return count ? std::optional<double>(static_cast<double>(*count)) : std::nullopt;
 }
 
+using Score = const TrialScore&;
+
 std::vector<Column> columnsOf(const std::string& task)
 {
-  using Score = const TrialScore&;
-  const std::vector<Column> of_vision{
-      {"pose RMS (px)", [](Score s) { return s.pose_rms_px; }},
-      {"tracked (%)", [](Score s) { return percent(s.tracked_fraction); }, "{:.1f}"},
-      {"saturated (%)", [](Score s) { return std::optional<double>(100.0 * s.saturated_fraction); }, "{:.2g}"}};
-  std::vector<Column> columns;
-  if (task == "laser") {
-    columns = {{"mean (\u00b5m)", [](Score s) { return s.placement_mean_um; }},
-               {"p95 (\u00b5m)", [](Score s) { return s.placement_p95_um; }},
-               {"max (\u00b5m)", [](Score s) { return s.placement_max_um; }},
-               {"burns/s", [](Score s) { return s.burns_per_s; }},
-               {"targets", [](Score s) { return number(s.targets); }},
-               {"fired", [](Score s) { return number(s.fired); }},
-               {"refused", [](Score s) { return number(s.refused); }},
-               {"missed", [](Score s) { return number(s.missed); }},
-               {"far", [](Score s) { return number(s.far_pulses); }},
-               {"clearance (\u00b5m)", [](Score s) { return s.min_vessel_clearance_um; }}};
-  } else {
-    columns = {{"RMS (\u00b5m)", [](Score s) { return s.rms_um; }},
-               {"median (\u00b5m)", [](Score s) { return s.median_um; }},
-               {"p95 (\u00b5m)", [](Score s) { return s.p95_um; }},
-               {"max (\u00b5m)", [](Score s) { return s.max_um; }},
-               {"covered (%)", [](Score s) { return percent(s.path_coverage); }},
-               {"travel (mm)", [](Score s) { return s.tip_travel_mm; }}};
-  }
-  columns.insert(columns.end(), of_vision.begin(), of_vision.end());
-  return columns;
+  if (task == "laser")
+    return {{"mean (\u00b5m)", [](Score s) { return s.placement_mean_um; }},
+            {"p95 (\u00b5m)", [](Score s) { return s.placement_p95_um; }},
+            {"max (\u00b5m)", [](Score s) { return s.placement_max_um; }},
+            {"burns/s", [](Score s) { return s.burns_per_s; }},
+            {"targets", [](Score s) { return number(s.targets); }},
+            {"fired", [](Score s) { return number(s.fired); }},
+            {"refused", [](Score s) { return number(s.refused); }},
+            {"missed", [](Score s) { return number(s.missed); }},
+            {"far", [](Score s) { return number(s.far_pulses); }},
+            {"clearance (\u00b5m)", [](Score s) { return s.min_vessel_clearance_um; }}};
+  return {{"RMS (\u00b5m)", [](Score s) { return s.rms_um; }},
+          {"median (\u00b5m)", [](Score s) { return s.median_um; }},
+          {"p95 (\u00b5m)", [](Score s) { return s.p95_um; }},
+          {"max (\u00b5m)", [](Score s) { return s.max_um; }},
+          {"covered (%)", [](Score s) { return percent(s.path_coverage); }},
+          {"time (s)", [](Score s) { return std::optional<double>(s.duration_s); }},
+          {"travel (mm)", [](Score s) { return s.tip_travel_mm; }}};
+}
+
+std::vector<Column> columnsOfLoop()
+{
+  return {{"localization RMS (px)", [](Score s) { return s.pose_rms_px; }},
+          {"rotation RMS (deg)", [](Score s) { return s.pose_rms_deg; }},
+          {"frames tracked (%)", [](Score s) { return percent(s.tracked_fraction); }},
+          {"time saturated (%)", [](Score s) { return std::optional<double>(100.0 * s.saturated_fraction); }},
+          {"holds", [](Score s) { return number(s.hold_events); }},
+          {"faults", [](Score s) { return number(s.fault_events); }}};
+}
+
+/// Three digits of the mean, and as many places of the spread.
+std::string withSpread(const OverSeeds& over, std::size_t count)
+{
+  const double magnitude = std::abs(over.mean);
+  const int places = magnitude < 1e-9 ? 0 : std::clamp(2 - static_cast<int>(std::floor(std::log10(magnitude))), 0, 4);
+  if (count < 2) return fmt::format("{:.{}f}", over.mean, places);
+  return fmt::format("{:.{}f} \u00b1 {:.{}f}", over.mean, places, over.spread, places);
 }
 
 std::string meanAndSpread(const AidTrials& aid, const Column& column)
@@ -81,15 +88,24 @@ std::string meanAndSpread(const AidTrials& aid, const Column& column)
   std::vector<double> values;
   for (const TrialRecord* trial : aid.trials)
     if (const std::optional<double> value = column.of(trial->score)) values.push_back(*value);
-  if (values.empty()) return kNothing;
-  const OverSeeds over = meanOverSeeds(values);
-  const std::string mean = fmt::format(fmt::runtime(column.format), over.mean);
-  return values.size() > 1 ? fmt::format("{} \u00b1 {:.2g}", mean, over.spread) : mean;
+  return values.empty() ? kNothing : withSpread(meanOverSeeds(values), values.size());
 }
 
-std::string meanOf(const OverSeeds& over, const std::string& unit)
+std::string meanOf(const PairedComparison& figures, const OverSeeds& over, const std::string& unit)
 {
-  return fmt::format("{:.3g} \u00b1 {:.2g} {}", over.mean, over.spread, unit == "um" ? "\u00b5m" : unit);
+  return withSpread(over, figures.pairs) + (unit == "um" ? " \u00b5m" : " " + unit);
+}
+
+ReportTable tableOf(const StudyGroup& group, const std::vector<Column>& columns)
+{
+  ReportTable table{{"aid", "seeds"}, {}};
+  for (const Column& column : columns) table.names.push_back(column.name);
+  for (const AidTrials& aid : group.aids) {
+    std::vector<std::string> row{styleOf(aid.aid).name, std::to_string(aid.trials.size())};
+    for (const Column& column : columns) row.push_back(meanAndSpread(aid, column));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
 }
 
 }  // namespace
@@ -129,7 +145,7 @@ ReportTable scoreTable(const TrialScore& score)
 
 ReportTable eventTable(const std::vector<TrialEvent>& events)
 {
-  ReportTable table{{"time (s)", "what", "reason", ""}, {}, true};
+  ReportTable table{{"time (s)", "what", "reason", ""}, {}, 4};
   for (const TrialEvent& event : events)
     table.rows.push_back({fmt::format("{:.3f}", event.t_s), event.what, event.reason, event.warning ? "warning" : ""});
   return table;
@@ -139,23 +155,13 @@ ReportTable targetTable(const TrialRecord& record)
 {
   std::map<std::pair<std::string, std::string>, int> counts;
   for (const PlannedTarget& target : record.targets) ++counts[{target.fate, target.reason}];
-  ReportTable table{{"fate", "reason", "targets"}, {}, true};
+  ReportTable table{{"fate", "reason", "targets"}, {}, 2};
   for (const auto& [why, count] : counts) table.rows.push_back({why.first, why.second, std::to_string(count)});
   return table;
 }
 
-ReportTable aidTable(const StudyGroup& group)
-{
-  const std::vector<Column> columns = columnsOf(group.task);
-  ReportTable table{{"aid", "seeds"}, {}};
-  for (const Column& column : columns) table.names.push_back(column.name);
-  for (const AidTrials& aid : group.aids) {
-    std::vector<std::string> row{styleOf(aid.aid).name, std::to_string(aid.trials.size())};
-    for (const Column& column : columns) row.push_back(meanAndSpread(aid, column));
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
+ReportTable aidTable(const StudyGroup& group) { return tableOf(group, columnsOf(group.task)); }
+ReportTable loopTable(const StudyGroup& group) { return tableOf(group, columnsOfLoop()); }
 
 std::string percentWithInterval(const Estimate& estimate)
 {
@@ -164,40 +170,34 @@ std::string percentWithInterval(const Estimate& estimate)
 
 ReportTable comparisonTable(const std::vector<AidComparison>& comparisons)
 {
-  ReportTable table{{"aid", "measure", "seeds", "without", "with", "reduction (95 % CI)", "seeds worse"}, {}};
+  ReportTable table{{"aid", "measure", "seeds", "without", "with", "reduction (95 % CI)", "seeds worse"}, {}, 2};
   for (const AidComparison& comparison : comparisons) {
     const PairedComparison& figures = comparison.figures;
     if (figures.pairs == 0) continue;
     const auto worse = std::count(figures.worse.begin(), figures.worse.end(), true);
-    table.rows.push_back(
-        {styleOf(comparison.aid).name, comparison.measure.name, std::to_string(figures.pairs),
-         meanOf(figures.unaided, comparison.measure.unit), meanOf(figures.aided, comparison.measure.unit),
-         percentWithInterval(figures.reduction_percent), fmt::format("{} of {}", worse, figures.pairs)});
+    table.rows.push_back({styleOf(comparison.aid).name, comparison.measure.name, std::to_string(figures.pairs),
+                          meanOf(figures, figures.unaided, comparison.measure.unit),
+                          meanOf(figures, figures.aided, comparison.measure.unit),
+                          percentWithInterval(figures.reduction_percent),
+                          fmt::format("{} of {}", worse, figures.pairs)});
   }
   return table;
 }
 
-ReportTable trialTable(const std::vector<TrialRecord>& records)
+ReportTable trialTable(const StudyGroup& group)
 {
-  const bool laser = std::any_of(records.begin(), records.end(), [](const auto& r) { return r.task == "laser"; });
-  const bool tip = std::any_of(records.begin(), records.end(), [](const auto& r) { return r.task != "laser"; });
-  std::vector<Column> columns;
-  if (tip) columns = columnsOf("trace");
-  for (const Column& column : laser ? columnsOf("laser") : std::vector<Column>())
-    if (std::none_of(columns.begin(), columns.end(), [&](const Column& c) {
-          return c.name == column.name && tip && c.name != "p95 (\u00b5m)" && c.name != "max (\u00b5m)";
-        }))
-      columns.push_back(column);
-  ReportTable table{{"trial"}, {}};
+  std::vector<Column> columns = columnsOf(group.task);
+  for (const Column& column : columnsOfLoop()) columns.push_back(column);
+  ReportTable table{{"aid", "seed"}, {}};
   for (const Column& column : columns) table.names.push_back(column.name);
-  table.names.insert(table.names.end(), {"holds", "faults", "warnings"});
-  for (const TrialRecord& record : records) {
-    std::vector<std::string> row{nameOf(record)};
-    for (const Column& column : columns) row.push_back(cell(column.of(record.score), column.format));
-    row.insert(row.end(), {std::to_string(record.score.hold_events), std::to_string(record.score.fault_events),
-                           std::to_string(warningsOf(record).size())});
-    table.rows.push_back(std::move(row));
-  }
+  table.names.emplace_back("warnings");
+  for (const AidTrials& aid : group.aids)
+    for (const TrialRecord* trial : aid.trials) {
+      std::vector<std::string> row{styleOf(aid.aid).name, std::to_string(trial->score.seed)};
+      for (const Column& column : columns) row.push_back(cell(column.of(trial->score)));
+      row.push_back(std::to_string(warningsOf(*trial).size()));
+      table.rows.push_back(std::move(row));
+    }
   return table;
 }
 
@@ -227,7 +227,7 @@ ReportTable touchTable(const StudyGroup& group)
 
 ReportTable publishedTable(const StudyGroup& group, const std::vector<AidComparison>& comparisons)
 {
-  ReportTable table{{"what", "here", "published", "where"}, {}, true};
+  ReportTable table{{"what", "here", "published", "where"}, {}, 4};
   const auto reduction = [&](const std::string& measure) -> std::string {
     for (const AidComparison& comparison : comparisons)
       if (comparison.aid == "automated" && comparison.measure.name == measure && comparison.figures.pairs > 0)

@@ -20,10 +20,12 @@ ReportTable targetTable(const TrialRecord& record);
 
 /// Mean and spread over seeds, a row an aid.
 ReportTable aidTable(const StudyGroup& group);
+/// The same of localization, reach and the servo's states.
+ReportTable loopTable(const StudyGroup& group);
 /// What each aid changes, with 95 % intervals.
 ReportTable comparisonTable(const std::vector<AidComparison>& comparisons);
 /// A row a trial.
-ReportTable trialTable(const std::vector<TrialRecord>& records);
+ReportTable trialTable(const StudyGroup& group);
 /// Burns that touch a true vessel, by its calibre.
 ReportTable touchTable(const StudyGroup& group);
 /// Beside what was published by others; empty where nothing of the kind was.

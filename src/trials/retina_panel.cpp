@@ -14,26 +14,52 @@ namespace eyeslam::trials {
 
 namespace {
 
-constexpr int kWidest_px = 900;      // of an embedded picture: twice what the panels of a page have
-constexpr double kColourKept = 0.5;  // of the picture's saturation
-constexpr double kLightened = 0.45;  // of the way to white
-constexpr int kFiner = 3;            // outlines are traced at thirds of a pixel
-constexpr const char* kVesselOutline = "stroke=\"#7a1f1f\" stroke-width=\"0.9\" stroke-opacity=\"0.75\"";
+constexpr int kWidest_px = 900;                     // of an embedded picture: twice what the panels of a page have
+constexpr double kAround = 0.5e-3;                  // m; light changes over more, vessels over less
+constexpr double kPaper[] = {214.0, 226.0, 238.0};  // BGR
+constexpr int kSteps = 3;                           // px, over which an outline is smoothed to each side
+constexpr std::size_t kShortest = 24;               // places of an outline, at those thirds
+constexpr int kFiner = 3;                           // outlines are traced at thirds of a pixel
+constexpr const char* kVesselOutline = "stroke=\"#8c2d2d\" stroke-width=\"0.8\" stroke-opacity=\"0.8\"";
 constexpr const char* kMarginOutline =
     "stroke=\"#222\" stroke-width=\"0.8\" stroke-opacity=\"0.7\" stroke-dasharray=\"4 3\"";
 
-cv::Mat toned(const cv::Mat& bgr)
+// Light and even, whatever lit the picture: what is darker than its surroundings, on warm paper. Reds keep more of it,
+// so that vessels stay red.
+cv::Mat toned(const cv::Mat& bgr, double m_per_px)
 {
-  cv::Mat grey, grey_bgr, pale;
-  cv::cvtColor(bgr, grey, cv::COLOR_BGR2GRAY);
-  cv::cvtColor(grey, grey_bgr, cv::COLOR_GRAY2BGR);
-  cv::addWeighted(bgr, kColourKept, grey_bgr, 1.0 - kColourKept, 0.0, pale);
-  double darkest = 0.0, lightest = 255.0;
-  cv::minMaxLoc(grey, &darkest, &lightest);
-  // Stretched to the full range first: photographs are dark, and ink takes more light still.
-  const double stretch = 255.0 / std::max(60.0, lightest);
-  pale.convertTo(pale, -1, stretch * (1.0 - kLightened), 255.0 * kLightened);
-  return pale;
+  cv::Mat picture, around;
+  bgr.convertTo(picture, CV_32FC3, 1.0 / 255.0, 0.02);
+  const int reach = std::max(3, static_cast<int>(kAround / m_per_px));
+  cv::blur(picture, around, {reach, reach}, {-1, -1}, cv::BORDER_REFLECT);
+  cv::Mat_<cv::Vec3f> contrast;
+  cv::divide(picture, around, contrast);
+  cv::Mat_<cv::Vec3b> result(contrast.size());
+  std::transform(contrast.begin(), contrast.end(), result.begin(), [](const cv::Vec3f& pixel) {
+    const double green = std::clamp(static_cast<double>(pixel[1]), 0.4, 1.25);
+    return cv::Vec3b(cv::saturate_cast<std::uint8_t>(kPaper[0] * std::pow(green, 1.1)),
+                     cv::saturate_cast<std::uint8_t>(kPaper[1] * std::pow(green, 1.0)),
+                     cv::saturate_cast<std::uint8_t>(kPaper[2] * std::pow(green, 0.45)));
+  });
+  return result;
+}
+
+/// A closed curve averaged over some places before and behind each: the steps of pixels go, thin vessels stay.
+Points withoutSteps(const std::vector<cv::Point>& curve)
+{
+  const int count = static_cast<int>(curve.size());
+  const int reach = std::min(kSteps * kFiner, (count - 1) / 4);
+  Points smooth;
+  for (int i = 0; i < count; ++i) {
+    Eigen::Vector2d sum(0.0, 0.0);
+    for (int k = -reach; k <= reach; ++k) {
+      const cv::Point& point = curve[static_cast<std::size_t>((i + k + count) % count)];
+      sum += Eigen::Vector2d(point.x, point.y);
+    }
+    smooth.emplace_back((sum / (2.0 * reach + 1.0) + Eigen::Vector2d(0.5, 0.5)) / kFiner);
+  }
+  smooth.push_back(smooth.front());
+  return smooth;
 }
 
 cv::Mat_<std::uint8_t> dilated(const cv::Mat_<std::uint8_t>& mask, double radius_px)
@@ -62,7 +88,7 @@ RetinaBackground::RetinaBackground(const RetinaPicture& picture, const Box& regi
   // A pixel's centre has whole coordinates, in SVG its corner has.
   const Eigen::Vector2d corner = picture.origin + picture.m_per_px * Eigen::Vector2d(part.x - 0.5, part.y - 0.5);
   place_ = {corner, corner + picture.m_per_px * Eigen::Vector2d(part.width, part.height)};
-  cv::Mat shown = toned(picture.bgr(part));
+  cv::Mat shown = toned(picture.bgr(part), picture.m_per_px);
   if (shown.cols > kWidest_px)
     cv::resize(shown, shown, {kWidest_px, kWidest_px * shown.rows / shown.cols}, 0.0, 0.0, cv::INTER_AREA);
   shapes_ = fmt::format("<image width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" href=\"{}\"/>\n", part.width,
@@ -77,19 +103,15 @@ std::string RetinaBackground::outlines(const cv::Mat_<std::uint8_t>& mask, const
 {
   cv::Mat fine;
   cv::resize(mask, fine, {}, kFiner, kFiner, cv::INTER_LINEAR);
-  cv::GaussianBlur(fine, fine, {}, 0.8 * kFiner);
   cv::threshold(fine, fine, 127, 255, cv::THRESH_BINARY);
-  // No line along the cut.
   std::vector<std::vector<cv::Point>> contours;
   cv::findContours(fine, contours, cv::RETR_LIST, cv::CHAIN_APPROX_NONE);
   std::string ways;
   for (const std::vector<cv::Point>& contour : contours) {
-    std::vector<cv::Point> corners;
-    cv::approxPolyDP(contour, corners, 0.35 * kFiner, true);
-    if (corners.size() < 3) continue;
+    if (contour.size() < kShortest) continue;
     char step = 'M';
-    for (const cv::Point& corner : corners) {
-      ways += fmt::format("{}{:.1f} {:.1f}", step, (corner.x + 0.5) / kFiner, (corner.y + 0.5) / kFiner);
+    for (const Eigen::Vector2d& corner : simplified(withoutSteps(contour), 0.12)) {
+      ways += fmt::format("{}{:.1f} {:.1f}", step, corner.x(), corner.y());
       step = 'L';
     }
     ways += 'z';

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "eyeslam/trials/aid_style.h"
@@ -28,16 +29,20 @@ std::vector<Headline> headlinesOf(const StudyGroup& group, const std::vector<Aid
   for (const AidComparison& comparison : comparisons) {
     if (comparison.aid != strongest || comparison.figures.pairs == 0) continue;
     const Estimate& reduction = comparison.figures.reduction_percent;
-    headlines.push_back(
-        {fmt::format("\u2212{:.1f}", reduction.value), "%",
-         fmt::format("{} with {} (95 % CI {:.1f} to {:.1f}, {} seeds)", comparison.measure.name,
-                     styleOf(strongest).name, reduction.low, reduction.high, comparison.figures.pairs)});
+    headlines.push_back({fmt::format("{}{:.1f}", reduction.value < 0.0 ? "+" : "\u2212", std::abs(reduction.value)),
+                         "%",
+                         fmt::format("{}, {} (95 % CI of the reduction {:.1f} to {:.1f} %)", comparison.measure.name,
+                                     styleOf(strongest).name, reduction.low, reduction.high)});
   }
-  for (const AidComparison& comparison : comparisons)
-    if (comparison.aid == strongest && comparison.measure.name == measuresOf(group.task).front().name)
-      headlines.push_back({fmt::format("{:.1f}", comparison.figures.aided.mean), "\u00b5m",
-                           fmt::format("{}, mean of seeds; without aid {:.0f} \u00b5m", comparison.measure.name,
-                                       comparison.figures.unaided.mean)});
+  if (headlines.empty()) return headlines;
+  const AidComparison& first =
+      *std::find_if(comparisons.begin(), comparisons.end(), [&](const AidComparison& c) { return c.aid == strongest; });
+  headlines.push_back({fmt::format("{:.1f}", first.figures.aided.mean), "\u00b5m",
+                       fmt::format("{}, mean of {} seeds; {} {:.0f} \u00b5m", first.measure.name, first.figures.pairs,
+                                   styleOf(group.unaided()->aid).name, first.figures.unaided.mean)});
+  headlines.push_back({fmt::format("{}", seedsMadeWorse(comparisons, strongest).size()),
+                       fmt::format("of {}", first.figures.pairs),
+                       "seeds made worse, by RMS or mean, or 95th percentile"});
   return headlines;
 }
 
@@ -86,6 +91,9 @@ void addStatistics(const StudyGroup& group, const std::vector<AidComparison>& co
 {
   page.table(aidTable(group), "Mean \u00b1 standard deviation over seeds.");
   page.table(
+      loopTable(group),
+      "Localization against truth (px of the half-resolution image), and the loop; mean \u00b1 standard deviation.");
+  page.table(
       comparisonTable(comparisons),
       "Paired comparison over seeds: reduction of the mean, with the 95 % interval of a percentile bootstrap over "
       "seeds (4000 resamples).");
@@ -117,10 +125,10 @@ void addGroup(const StudyGroup& group, const std::string& name, ReportPage& page
   if (!aided.empty()) addLatencies(aided, page);
 }
 
-void addOrigin(const std::vector<TrialRecord>& records, ReportPage& page)
+void addOrigin(const std::vector<TrialRecord>& records, const std::vector<StudyGroup>& groups, ReportPage& page)
 {
   page.section("Trials and configuration");
-  page.foldedTable(fmt::format("All {} trials", records.size()), trialTable(records));
+  for (const StudyGroup& group : groups) page.foldedTable("Every trial of " + titleOf(group), trialTable(group));
   std::set<std::string> shown, versions;
   for (const TrialRecord& record : records) {
     versions.insert(record.score.version);
@@ -140,14 +148,15 @@ std::string studyReport(const std::vector<TrialRecord>& records)
 {
   const std::vector<StudyGroup> groups = groupsOf(records);
   std::string title;
+  std::set<std::string> named;
   for (const StudyGroup& group : groups)
-    if (title.find(group.scenario) == std::string::npos) title += (title.empty() ? "" : ", ") + group.scenario;
+    if (named.insert(group.scenario).second) title += (title.empty() ? "" : ", ") + group.scenario;
   ReportPage page(title.empty() ? "No trials" : title, fmt::format("{} trials", records.size()));
   page.warnings(warningsOf(records, groups));
   page.note(truthNote());
   int number = 0;
   for (const StudyGroup& group : groups) addGroup(group, fmt::format("retina_{}", ++number), page);
-  if (!records.empty()) addOrigin(records, page);
+  if (!records.empty()) addOrigin(records, groups, page);
   return page.html();
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <string_view>
 #include <utility>
 
 #include "eyeslam/trials/markup.h"
@@ -14,7 +15,8 @@ namespace eyeslam::trials {
 
 namespace {
 
-constexpr double kLetterWidth = 0.53;  // of a letter's height, on average in Helvetica and its kin
+// In Helvetica and its kin.
+constexpr std::string_view kNarrow = "fijlrtI .,:;!|()'-/", kBroad = "mwMWGOQCD%";
 
 std::string attributes(const Paint& paint)
 {
@@ -158,7 +160,14 @@ Points simplified(const Points& points, double tolerance)
 
 double widthOf(const std::string& words, double size)
 {
-  return kLetterWidth * size * static_cast<double>(words.size());
+  double letters = 0.0;
+  for (const char letter : words) {
+    if ((static_cast<unsigned char>(letter) & 0xc0U) == 0x80U) continue;  // goes on with a letter of UTF-8
+    const bool narrow = kNarrow.find(letter) != std::string_view::npos;
+    const bool broad = kBroad.find(letter) != std::string_view::npos;
+    letters += narrow ? 0.28 : broad ? 0.78 : 0.55;
+  }
+  return letters * size;
 }
 
 }  // namespace eyeslam::trials

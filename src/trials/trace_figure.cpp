@@ -92,12 +92,12 @@ void drawLegend(const std::vector<const TrialRecord*>& trials, double y, SvgCanv
     add("tip, " + style.name, Paint::line(style.colour, 2.0));
   }
   add("what was to be followed", Paint::dashed("#000", 1.2, "6 4"));
-  add("true edges of vessels", Paint::line("#7a1f1f", 1.0));
+  add("true edges of vessels", Paint::line("#8c2d2d", 1.0));
 }
 
 std::string titleOf(const TrialRecord& trial, char letter)
 {
-  std::string title = fmt::format("{}  {}", letter, styleOf(trial.score.aid).name);
+  std::string title = fmt::format("{}\u00a0 {}", letter, styleOf(trial.score.aid).name);
   if (trial.score.rms_um) title += fmt::format(": RMS {:.3g} \u00b5m", *trial.score.rms_um);
   return title;
 }
@@ -128,7 +128,7 @@ std::string traceFigure(const std::vector<const TrialRecord*>& trials, const std
   for (std::size_t i = 0; i < trials.size(); ++i) {
     const double x = static_cast<double>(single ? 1 : i) * (width + kGap);
     const Box plot = boxAt(x, single ? 24.0 : below, width, closer_height);
-    drawPanel(*trials[i], background, plot, close_up, fmt::format("{}  close-up", letter++), canvas);
+    drawPanel(*trials[i], background, plot, close_up, fmt::format("{}\u00a0 close-up", letter++), canvas);
   }
   drawLegend(trials, bottom + 22.0, canvas);
   return canvas.svg();
