@@ -144,6 +144,18 @@ TEST(SortedLog, LetsNoImpossibleTimeDisturbTheOthers)
   }
 }
 
+// Ten minutes ahead is possible, so it is believed; but it must not end the wait for events that are overtaken.
+TEST(SortedLog, LetsNoTimeThatIsAheadEmptyItsWindow)
+{
+  std::vector<std::int64_t> utimes = everyMillisecond(1000);
+  utimes[500] += 600 * kSecond;
+  std::swap(utimes[499], utimes[501]);
+  const Read read = readSorted(utimes);
+  EXPECT_TRUE(std::is_sorted(read.utimes.begin(), read.utimes.end()));
+  EXPECT_EQ(read.numbers.back(), 500);
+  EXPECT_EQ(read.findings.late + read.findings.strays, 0);
+}
+
 TEST(SortedLog, TakesAPauseOfADayForAPause)
 {
   std::vector<std::int64_t> utimes = everyMillisecond(100);
