@@ -16,7 +16,7 @@ namespace eyeslam::trials {
 
 namespace {
 
-constexpr double kWidth = 1080.0, kGap = 24.0, kTallest_px = 560.0;
+constexpr double kWidth = 1080.0, kGap = 24.0, kTallest_px = 560.0, kSinglePanel_px = 820.0;
 constexpr double kMargin = 200e-6, kLeast = 1.5e-3;  // m
 constexpr double kUsualBurn = 100e-6;                // m, where the plan does not say
 constexpr double kFar_um = 60.0, kBound_um = 30.0;   // rings; issue 17: farther is a far pulse
@@ -87,7 +87,7 @@ void drawPulse(const TrialRecord& trial, const PulseRecord& pulse, const RetinaP
 }
 
 void drawPanel(const TrialRecord& trial, const RetinaBackground& background, const Box& plot, const Box& region,
-               char letter, SvgCanvas& canvas)
+               char letter, const Eigen::Vector2d& reasons_at, SvgCanvas& canvas)
 {
   RetinaPanel panel(canvas, plot, region);
   panel.begin(background);
@@ -98,42 +98,64 @@ void drawPanel(const TrialRecord& trial, const RetinaBackground& background, con
   if (trial.score.placement_mean_um)
     title += fmt::format(": {:.3g} \u00b5m off on average", *trial.score.placement_mean_um);
   panel.finish(title);
-  double y = plot.max().y() + 18.0;
+  Eigen::Vector2d at = reasons_at;
   for (const auto& [reason, given] : letters) {
     const auto count = std::count_if(trial.targets.begin(), trial.targets.end(),
                                      [&r = reason](const PlannedTarget& target) { return target.reason == r; });
-    canvas.text({plot.min().x(), y}, fmt::format("{}\u00a0 {} ({})", given, reason, count), {11.5});
-    y += 15.0;
+    canvas.text(at, fmt::format("{}\u00a0 {} ({})", given, reason, count), {11.5});
+    at.y() += 15.0;
   }
 }
 
-void drawLegend(const std::vector<const TrialRecord*>& trials, double margin, double y, SvgCanvas& canvas)
+/// Lays entries of a legend in a row, or below each other.
+class Legend {
+ public:
+  Legend(SvgCanvas& canvas, const Eigen::Vector2d& at, double row_step) : canvas_(canvas), at_(at), row_step_(row_step)
+  {}
+
+  void ring(const std::string& words, const Paint& paint)
+  {
+    canvas_.circle(glyph(), 7.0, paint);
+    finish(words);
+  }
+  void crossed(const std::string& words, const Paint& paint)
+  {
+    const Eigen::Vector2d centre = glyph();
+    canvas_.line(centre - Eigen::Vector2d(5, 5), centre + Eigen::Vector2d(5, 5), paint);
+    canvas_.line(centre - Eigen::Vector2d(5, -5), centre + Eigen::Vector2d(5, -5), paint);
+    ring(words, paint);
+  }
+  void line(const std::string& words, const Paint& paint)
+  {
+    canvas_.line(glyph() - Eigen::Vector2d(8, 0), glyph() + Eigen::Vector2d(8, 0), paint);
+    finish(words);
+  }
+
+ private:
+  Eigen::Vector2d glyph() const { return at_ + Eigen::Vector2d(8.0, -4.0); }
+  void finish(const std::string& words)
+  {
+    canvas_.text(at_ + Eigen::Vector2d(21.0, 0.0), words, {12.0});
+    at_ += row_step_ > 0.0 ? Eigen::Vector2d(0.0, row_step_) : Eigen::Vector2d(21.0 + widthOf(words, 12.0) + 18.0, 0.0);
+  }
+
+  SvgCanvas& canvas_;
+  Eigen::Vector2d at_;
+  double row_step_;
+};
+
+void drawLegend(const std::vector<const TrialRecord*>& trials, double margin, Legend legend)
 {
-  double x = 8.0;
-  const auto add = [&](const std::string& words, auto draw) {
-    draw(Eigen::Vector2d(x, y - 4.0));
-    canvas.text({x + 13.0, y}, words, {12.0});
-    x += 13.0 + widthOf(words, 12.0) + 24.0;
-  };
-  const auto ring = [&](const Paint& paint) { return [&canvas, paint](auto at) { canvas.circle(at, 7.0, paint); }; };
-  const auto crossed = [&](const Paint& paint) {
-    return [&canvas, paint](auto at) {
-      canvas.circle(at, 7.0, paint);
-      canvas.line(at - Eigen::Vector2d(5, 5), at + Eigen::Vector2d(5, 5), paint);
-      canvas.line(at - Eigen::Vector2d(5, -5), at + Eigen::Vector2d(5, -5), paint);
-    };
-  };
-  add("target", ring(Paint::line("#111", 1.0)));
+  legend.ring("target", Paint::line("#111", 1.0));
   for (const TrialRecord* trial : trials)
-    add("burn, " + styleOf(trial->score.aid).name, ring(Paint::area(styleOf(trial->score.aid).colour, 0.55)));
-  add("touches a true vessel", ring(Paint::line("#000", 2.2)));
-  add("refused", crossed(Paint::line("#555", 1.0)));
-  add("missed", crossed(Paint::line(kMissedColour, 2.2)));
-  add("not reached", ring(Paint::dashed("#333", 1.2, "2 2")));
+    legend.ring("burn, " + styleOf(trial->score.aid).name, Paint::area(styleOf(trial->score.aid).colour, 0.55));
+  legend.ring("touches a true vessel", Paint::line("#000", 2.2));
+  legend.crossed("refused", Paint::line("#555", 1.0));
+  legend.crossed("missed", Paint::line(kMissedColour, 2.2));
+  legend.ring("not reached", Paint::dashed("#333", 1.2, "2 2"));
+  legend.line("far off its target", Paint::line("#000", 1.6));
   if (margin > 0.0)
-    add(fmt::format("{:.0f} \u00b5m from vessels", 1e6 * margin), [&](auto at) {
-      canvas.line(at - Eigen::Vector2d(8, 0), at + Eigen::Vector2d(8, 0), Paint::dashed("#222", 1.0, "4 3"));
-    });
+    legend.line(fmt::format("{:.0f} \u00b5m from vessels", 1e6 * margin), Paint::dashed("#222", 1.0, "4 3"));
 }
 
 std::vector<Eigen::Vector2d> offsetsOf(const std::vector<const TrialRecord*>& trials)
@@ -165,22 +187,27 @@ void drawOffsets(const std::vector<Eigen::Vector2d>& offsets, const std::string&
 
 std::string burnFigure(const std::vector<const TrialRecord*>& trials, double margin, const std::string& name)
 {
+  const bool single = trials.size() == 1;
   const auto columns = static_cast<double>(trials.size());
-  const double width = trials.size() == 1 ? 760.0 : (kWidth - kGap * (columns - 1.0)) / columns;
+  const double width = single ? kSinglePanel_px : (kWidth - kGap * (columns - 1.0)) / columns;
   Box region = regionOf(trials);
   const double shape = region.isEmpty() ? 1.4 : region.sizes().x() / region.sizes().y();
   const double height = std::min(kTallest_px, width / std::max(shape, 0.8));
   region = grownTo(region, width / height, kLeast);
   std::size_t reasons = 0;
   for (const TrialRecord* trial : trials) reasons = std::max(reasons, lettersOf({trial}).size());
-  const double legend = 24.0 + height + 15.0 * static_cast<double>(reasons) + 34.0;
-  SvgCanvas canvas(kWidth, legend + 10.0, "burns over the retina");
+  const double bottom = 24.0 + height;
+  const double legend = bottom + 15.0 * static_cast<double>(reasons) + 34.0;
+  SvgCanvas canvas(kWidth, single ? bottom + 10.0 : legend + 10.0, "burns over the retina");
   const RetinaBackground background(trials.front()->retina, region, margin, name);
   if (!background.empty()) canvas.insert(background.definition());
-  for (std::size_t i = 0; i < trials.size(); ++i)
-    drawPanel(*trials[i], background, boxAt(static_cast<double>(i) * (width + kGap), 24.0, width, height), region,
-              static_cast<char>('a' + static_cast<char>(i)), canvas);
-  drawLegend(trials, margin, legend, canvas);
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    const Box plot = boxAt(static_cast<double>(i) * (width + kGap), 24.0, width, height);
+    const Eigen::Vector2d reasons_at =
+        single ? Eigen::Vector2d(width + kGap, 250.0) : Eigen::Vector2d(plot.min().x(), bottom + 18.0);
+    drawPanel(*trials[i], background, plot, region, static_cast<char>('a' + static_cast<char>(i)), reasons_at, canvas);
+  }
+  drawLegend(trials, margin, single ? Legend(canvas, {width + kGap, 40.0}, 22.0) : Legend(canvas, {0.0, legend}, 0.0));
   return canvas.svg();
 }
 

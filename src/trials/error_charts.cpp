@@ -24,6 +24,10 @@ struct ErrorSeries {
   std::vector<double> t_s, um;
 };
 
+struct Distribution {
+  std::vector<double> um, percent;
+};
+
 ErrorSeries seriesOf(const TrialRecord& trial)
 {
   ErrorSeries series;
@@ -120,15 +124,21 @@ std::vector<double> errorsOf(const TrialRecord& trial)
   return errors;
 }
 
-/// Some quantiles of sorted values; all where they are few.
-ErrorSeries quantilesOf(const std::vector<double>& sorted, std::size_t wanted)
+/// The share of sorted values that is not greater, in percent: every step where they are few, else some quantiles.
+Distribution sharesOf(const std::vector<double>& sorted, std::size_t wanted)
 {
-  ErrorSeries curve;
-  const std::size_t steps = std::min(wanted, sorted.size());
+  Distribution curve;
+  const bool all = sorted.size() <= wanted;
+  const std::size_t steps = all ? sorted.size() : wanted;
+  const double share = 100.0 / static_cast<double>(std::max<std::size_t>(sorted.size(), 1));
   for (std::size_t i = 0; i < steps; ++i) {
-    const std::size_t at = steps == 1 ? 0 : i * (sorted.size() - 1) / (steps - 1);
+    const std::size_t at = all ? i : i * (sorted.size() - 1) / (steps - 1);
+    if (all) {
+      curve.um.push_back(sorted[at]);
+      curve.percent.push_back(share * static_cast<double>(at));
+    }
     curve.um.push_back(sorted[at]);
-    curve.t_s.push_back(100.0 * static_cast<double>(at + 1) / static_cast<double>(sorted.size()));
+    curve.percent.push_back(share * static_cast<double>(at + 1));
   }
   return curve;
 }
@@ -250,11 +260,11 @@ std::string errorDistribution(const std::vector<AidTrials>& aids)
   for (std::size_t i = 0; i < aids.size(); ++i) {
     const AidStyle style = styleOf(aids[i].aid);
     for (const TrialRecord* trial : aids[i].trials) {
-      const ErrorSeries thin = quantilesOf(errorsOf(*trial), 60);
-      if (aids[i].trials.size() > 1) chart.curve(thin.um, thin.t_s, Paint::line(style.colour, 0.7, 0.35));
+      const Distribution thin = sharesOf(errorsOf(*trial), 60);
+      if (aids[i].trials.size() > 1) chart.curve(thin.um, thin.percent, Paint::line(style.colour, 0.7, 0.35));
     }
-    const ErrorSeries thick = quantilesOf(pooled[i], 300);
-    chart.curve(thick.um, thick.t_s, Paint::line(style.colour, 2.4));
+    const Distribution thick = sharesOf(pooled[i], 300);
+    chart.curve(thick.um, thick.percent, Paint::line(style.colour, 2.4));
     keys.push_back({style.name, Paint::line(style.colour, 2.4)});
   }
   chart.legend(keys);

@@ -33,9 +33,9 @@ p { margin: 8px 0; max-width: 82ch; }
 figure { margin: 22px 0; break-inside: avoid; }
 figure svg { display: block; max-width: 100%; height: auto; font-family: inherit; overflow: visible; }
 figure svg svg { overflow: hidden; }
-figcaption, caption { font-size: 13.5px; color: #333; text-align: left; max-width: 100ch; }
+figcaption, .caption { font-size: 13.5px; color: #333; max-width: 120ch; }
 figcaption { margin-top: 8px; }
-caption { caption-side: top; padding-bottom: 6px; }
+.caption { margin: 0 0 6px; }
 .wide { overflow-x: auto; margin: 18px 0; break-inside: avoid; }
 table { border-collapse: collapse; font-size: 13.5px; font-variant-numeric: tabular-nums; }
 th, td { padding: 4px 12px 4px 0; text-align: right; white-space: nowrap; }
@@ -61,9 +61,9 @@ std::string rowOf(const std::vector<std::string>& cells, std::size_t words, cons
 
 std::string written(const ReportTable& table, const std::string& caption)
 {
-  std::string html = "<div class=\"wide\"><table>\n";
-  if (!caption.empty()) html += fmt::format("<caption>{}</caption>\n", caption);
-  html += "<thead>" + rowOf(table.names, table.words, "th") + "</thead>\n<tbody>\n";
+  std::string html = "<div class=\"wide\">";
+  if (!caption.empty()) html += fmt::format("<p class=\"caption\">{}</p>\n", caption);
+  html += "<table>\n<thead>" + rowOf(table.names, table.words, "th") + "</thead>\n<tbody>\n";
   for (const std::vector<std::string>& row : table.rows) html += rowOf(row, table.words, "td");
   return html + "</tbody></table></div>\n";
 }

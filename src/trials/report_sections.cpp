@@ -33,10 +33,11 @@ void addPictures(const std::vector<const TrialRecord*>& trials, const std::strin
                     seed, anyManual(trials) ? " Manual: a model fitted to nothing." : ""));
     return;
   }
+  const bool height = trials.front()->task == "standoff";
   page.figure(
       traceFigure(trials, name),
-      fmt::format("Way of the tip over the true retina, seed {}. The rectangle in the overview is the close-up.",
-                  seed));
+      fmt::format("Way of the tip over the true retina, seed {}. The rectangle in the overview is the close-up.{}",
+                  seed, height ? " Seen from above: the error is that of the height, in the next figure." : ""));
   page.figure(
       errorOverTime(trials),
       fmt::format("Error of the tip over time, seed {}: from the least to the greatest of each column, and its RMS "

@@ -163,9 +163,20 @@ ReportTable targetTable(const TrialRecord& record)
 ReportTable aidTable(const StudyGroup& group) { return tableOf(group, columnsOf(group.task)); }
 ReportTable loopTable(const StudyGroup& group) { return tableOf(group, columnsOfLoop()); }
 
-std::string percentWithInterval(const Estimate& estimate)
+std::string reductionOf(const PairedComparison& figures)
 {
+  const Estimate& estimate = figures.reduction_percent;
+  if (figures.pairs < 2) return fmt::format("{:.1f} %", estimate.value);
   return fmt::format("{:.1f} % ({:.1f} to {:.1f})", estimate.value, estimate.low, estimate.high);
+}
+
+ReportTable verdictTable(const StudyGroup& group)
+{
+  ReportTable table{{"trial", "verdict", "what had to happen, and what did"}, {}, 3};
+  for (const AidTrials& aid : group.aids)
+    for (const TrialRecord* trial : aid.trials)
+      if (trial->passed) table.rows.push_back({nameOf(*trial), *trial->passed ? "passed" : "FAILED", trial->verdict});
+  return table;
 }
 
 ReportTable comparisonTable(const std::vector<AidComparison>& comparisons)
@@ -177,8 +188,7 @@ ReportTable comparisonTable(const std::vector<AidComparison>& comparisons)
     const auto worse = std::count(figures.worse.begin(), figures.worse.end(), true);
     table.rows.push_back({styleOf(comparison.aid).name, comparison.measure.name, std::to_string(figures.pairs),
                           meanOf(figures, figures.unaided, comparison.measure.unit),
-                          meanOf(figures, figures.aided, comparison.measure.unit),
-                          percentWithInterval(figures.reduction_percent),
+                          meanOf(figures, figures.aided, comparison.measure.unit), reductionOf(figures),
                           fmt::format("{} of {}", worse, figures.pairs)});
   }
   return table;
@@ -231,7 +241,7 @@ ReportTable publishedTable(const StudyGroup& group, const std::vector<AidCompari
   const auto reduction = [&](const std::string& measure) -> std::string {
     for (const AidComparison& comparison : comparisons)
       if (comparison.aid == "automated" && comparison.measure.name == measure && comparison.figures.pairs > 0)
-        return percentWithInterval(comparison.figures.reduction_percent);
+        return reductionOf(comparison.figures);
     return {};
   };
   const char* kIros = "automated against unaided, fixed target: Toward Automated Intraocular Laser Surgery, IROS 2014";

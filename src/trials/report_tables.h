@@ -31,7 +31,9 @@ ReportTable touchTable(const StudyGroup& group);
 /// Beside what was published by others; empty where nothing of the kind was.
 ReportTable publishedTable(const StudyGroup& group, const std::vector<AidComparison>& comparisons);
 
-/// "92.1 % (90.8 to 93.2)"
-std::string percentWithInterval(const Estimate& estimate);
+/// "92.1 % (90.8 to 93.2)"; of one pair without an interval, which needs two.
+std::string reductionOf(const PairedComparison& figures);
+/// What had to happen, and what did; of trials that say so.
+ReportTable verdictTable(const StudyGroup& group);
 
 }  // namespace eyeslam::trials

@@ -22,27 +22,35 @@ namespace {
 
 constexpr std::size_t kSideBySide = 2;
 
+Headline headlineOf(const AidComparison& comparison)
+{
+  const Estimate& reduction = comparison.figures.reduction_percent;
+  std::string name = comparison.measure.name + ", " + styleOf(comparison.aid).name;
+  if (comparison.figures.pairs > 1)
+    name += fmt::format(" (95 % CI of the reduction {:.1f} to {:.1f} %)", reduction.low, reduction.high);
+  return {fmt::format("{}{:.1f}", reduction.value < 0.0 ? "+" : "\u2212", std::abs(reduction.value)), "%", name};
+}
+
+/// What the strongest aid changes; of a group without comparison the figures of its trial, where it is one.
 std::vector<Headline> headlinesOf(const StudyGroup& group, const std::vector<AidComparison>& comparisons)
 {
   std::vector<Headline> headlines;
-  const std::string& strongest = group.aids.back().aid;
+  const AidTrials& strongest = group.aids.back();
+  const AidComparison* first = nullptr;
   for (const AidComparison& comparison : comparisons) {
-    if (comparison.aid != strongest || comparison.figures.pairs == 0) continue;
-    const Estimate& reduction = comparison.figures.reduction_percent;
-    headlines.push_back({fmt::format("{}{:.1f}", reduction.value < 0.0 ? "+" : "\u2212", std::abs(reduction.value)),
-                         "%",
-                         fmt::format("{}, {} (95 % CI of the reduction {:.1f} to {:.1f} %)", comparison.measure.name,
-                                     styleOf(strongest).name, reduction.low, reduction.high)});
+    if (comparison.aid != strongest.aid || comparison.figures.pairs == 0) continue;
+    if (first == nullptr) first = &comparison;
+    headlines.push_back(headlineOf(comparison));
   }
-  if (headlines.empty()) return headlines;
-  const AidComparison& first =
-      *std::find_if(comparisons.begin(), comparisons.end(), [&](const AidComparison& c) { return c.aid == strongest; });
-  headlines.push_back({fmt::format("{:.1f}", first.figures.aided.mean), "\u00b5m",
-                       fmt::format("{}, mean of {} seeds; {} {:.0f} \u00b5m", first.measure.name, first.figures.pairs,
-                                   styleOf(group.unaided()->aid).name, first.figures.unaided.mean)});
-  headlines.push_back({fmt::format("{}", seedsMadeWorse(comparisons, strongest).size()),
-                       fmt::format("of {}", first.figures.pairs),
-                       "seeds made worse, by RMS or mean, or 95th percentile"});
+  if (first == nullptr && group.aids.size() == 1 && strongest.trials.size() == 1)
+    return trials::headlinesOf(*strongest.trials.front());
+  if (first == nullptr) return headlines;
+  headlines.push_back({fmt::format("{:.1f}", first->figures.aided.mean), "\u00b5m",
+                       fmt::format("{}, {}; {} {:.0f} \u00b5m", first->measure.name, styleOf(strongest.aid).name,
+                                   styleOf(group.unaided()->aid).name, first->figures.unaided.mean)});
+  headlines.push_back({fmt::format("{}", seedsMadeWorse(comparisons, strongest.aid).size()),
+                       fmt::format("of {} seeds", first->figures.pairs),
+                       "made worse by the aid, by 95th percentile or " + first->measure.name});
   return headlines;
 }
 
@@ -58,20 +66,24 @@ std::vector<const TrialRecord*> sideBySide(const StudyGroup& group, std::uint64_
   return shown;
 }
 
-void addExamples(const StudyGroup& group, const std::string& name, ReportPage& page)
+/// The median seed; where no trial was scored, any.
+void addMedian(const StudyGroup& group, const std::string& name, ReportPage& page)
+{
+  const AidTrials& strongest = group.aids.back();
+  const TrialRecord* median = examplesOf(strongest).median;
+  if (median == nullptr) return addPictures({strongest.trials.front()}, name, page);
+  if (strongest.trials.size() > 1)
+    page.paragraph(fmt::format("Of {} seeds, the median by {} with {} is seed {}:", strongest.trials.size(),
+                               measuresOf(group.task).front().name, styleOf(strongest.aid).name, median->score.seed));
+  addPictures(sideBySide(group, median->score.seed), name, page);
+}
+
+void addWorst(const StudyGroup& group, const std::string& name, ReportPage& page)
 {
   const Examples examples = examplesOf(group.aids.back());
-  const std::string aid = styleOf(group.aids.back().aid).name;
-  if (examples.median == nullptr) {
-    if (!group.aids.back().trials.empty()) addPictures({group.aids.back().trials.front()}, name + "_first", page);
-    return;
-  }
-  page.paragraph(fmt::format("Median seed by {} with {}: {}.", measuresOf(group.task).front().name, aid,
-                             examples.median->score.seed));
-  addPictures(sideBySide(group, examples.median->score.seed), name + "_median", page);
   if (examples.worst == examples.median) return;
-  page.paragraph(fmt::format("Worst seed: {}.", examples.worst->score.seed));
-  addPictures(sideBySide(group, examples.worst->score.seed), name + "_worst", page);
+  page.paragraph(fmt::format("The worst is seed {}:", examples.worst->score.seed));
+  addPictures(sideBySide(group, examples.worst->score.seed), name, page);
 }
 
 std::vector<const TrialRecord*> aidedTrials(const StudyGroup& group)
@@ -97,7 +109,8 @@ void addStatistics(const StudyGroup& group, const std::vector<AidComparison>& co
       comparisonTable(comparisons),
       "Paired comparison over seeds: reduction of the mean, with the 95 % interval of a percentile bootstrap over "
       "seeds (4000 resamples).");
-  page.figure(overSeedsFigure(group),
+  const bool several = group.aids.size() > 1 || group.aids.front().trials.size() > 1;
+  page.figure(several ? overSeedsFigure(group) : std::string(),
               "A dot a trial, lines join one seed; circle and bar: mean with its 95 % bootstrap interval.");
   page.figure(errorDistribution(group.aids),
               "Share of errors below each size: thick over all seeds, thin of each seed.");
@@ -114,13 +127,15 @@ void addGroup(const StudyGroup& group, const std::string& name, ReportPage& page
 {
   const std::vector<AidComparison> comparisons = comparisonsOf(group);
   page.section(titleOf(group));
-  if (group.aids.size() > 1 || group.aids.back().trials.size() > 1) page.headlines(headlinesOf(group, comparisons));
+  page.headlines(headlinesOf(group, comparisons));
   const AidTrials& first = group.unaided() != nullptr ? *group.unaided() : group.aids.front();
   if (!first.trials.empty()) page.note(operatorNote(*first.trials.front()));
+  page.table(verdictTable(group), "Verdicts.");
+  addMedian(group, name + "_median", page);
   addStatistics(group, comparisons, page);
   page.table(publishedTable(group, comparisons),
              "Beside published figures: of other experiments, eyes and judges, so they tell the size to expect.");
-  addExamples(group, name, page);
+  addWorst(group, name + "_worst", page);
   const std::vector<const TrialRecord*> aided = aidedTrials(group);
   if (!aided.empty()) addLatencies(aided, page);
 }
