@@ -15,6 +15,7 @@ std::vector<Headline> headlinesOf(const TrialRecord& record);
 /// Every score of a trial that applies, with its name in results.csv.
 ReportTable scoreTable(const TrialScore& score);
 ReportTable eventTable(const std::vector<TrialEvent>& events);
+ReportTable pulseTable(const std::vector<PulseRecord>& pulses);
 /// What became of the targets, by reason.
 ReportTable targetTable(const TrialRecord& record);
 

@@ -22,17 +22,24 @@ std::string counted(std::int64_t count, const std::string& thing)
   return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
 }
 
+// Where a bare hand's pulses go says nothing against the system; figures tell it.
+void warnOfPlaces(const TrialRecord& record, Warnings& warnings)
+{
+  if (isUnaided(record.score.aid)) return;
+  if (record.score.far_unexplained.value_or(0) > 0)
+    warnings.push_back(counted(*record.score.far_unexplained, "pulse") +
+                       " more than 60 um off that no motion of the retina explains");
+  const auto touching = std::count_if(record.pulses.begin(), record.pulses.end(),
+                                      [](const PulseRecord& pulse) { return pulse.touched_calibre >= kThickVessel; });
+  if (touching > 0) warnings.push_back(counted(touching, "burn") + " on a true vessel of 50 um or more");
+}
+
 void warnOfPulses(const TrialRecord& record, Warnings& warnings)
 {
   const TrialScore& score = record.score;
   if (score.interlock_violations.value_or(0) > 0)
     warnings.push_back(counted(*score.interlock_violations, "pulse") + " while an interlock was open");
-  if (score.far_unexplained.value_or(0) > 0)
-    warnings.push_back(counted(*score.far_unexplained, "pulse") +
-                       " more than 60 um off that no motion of the retina explains");
-  const auto touching = std::count_if(record.pulses.begin(), record.pulses.end(),
-                                      [](const PulseRecord& pulse) { return pulse.touched_calibre >= kThickVessel; });
-  if (touching > 0) warnings.push_back(counted(touching, "burn") + " on a true vessel of 50 um or more");
+  warnOfPlaces(record, warnings);
   const auto open = std::count_if(record.targets.begin(), record.targets.end(),
                                   [](const PlannedTarget& target) { return target.fate == "pending"; });
   if (open > 0) warnings.push_back(counted(open, "target") + " not reached in the time");

@@ -46,6 +46,7 @@ std::string trialReport(const TrialRecord& record)
   page.section("What happened");
   page.table(eventTable(record.events), "States of the servo and other events; time since the part that counts began.");
   page.section("Figures and configuration");
+  page.foldedTable("Every pulse", pulseTable(record.pulses));
   page.foldedTable("Every score", scoreTable(record.score));
   page.folded("Scenario and every option, as YAML", record.configuration);
   page.paragraph(fmt::format("Version {}, configuration {}.", record.score.version, record.score.config_hash));

@@ -86,6 +86,16 @@ TEST_F(TrialReports, DoNotWarnOfAHoldThatHadToBe)
   EXPECT_FALSE(has(trialReport(record), "class=\"warnings\""));
 }
 
+TEST_F(TrialReports, DoNotWarnOfWhereABareHandBurns)
+{
+  TrialRecord record = make.burnt("manual", 0);
+  record.score.far_unexplained = 7;
+  record.pulses.front().touched_calibre = 60e-6;
+  EXPECT_FALSE(has(trialReport(record), "class=\"warnings\""));
+  record.score.interlock_violations = 1;
+  EXPECT_TRUE(has(trialReport(record), "1 pulse while an interlock was open"));
+}
+
 TEST_F(TrialReports, NameWhatIsMissing)
 {
   TrialRecord record;
