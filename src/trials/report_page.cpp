@@ -40,7 +40,7 @@ figcaption { margin-top: 8px; }
 table { border-collapse: collapse; font-size: 13.5px; font-variant-numeric: tabular-nums; }
 th, td { padding: 4px 12px 4px 0; text-align: right; white-space: nowrap; }
 th.words, td.words { text-align: left; }
-td.words { white-space: normal; }
+td.words + td.words { white-space: normal; }
 th { font-weight: 600; border-bottom: 1px solid #333; border-top: 1px solid #333; vertical-align: bottom; }
 td { border-bottom: 1px solid #ececec; }
 tbody tr:last-child td { border-bottom: 1px solid #333; }
@@ -48,7 +48,8 @@ details { margin: 12px 0; }
 summary { cursor: pointer; font-weight: 600; }
 pre { font: 12.5px/1.45 "DejaVu Sans Mono", Menlo, Consolas, monospace; background: #f7f7f7; padding: 12px;
   overflow-x: auto; border-radius: 3px; }
-@media print { main { max-width: none; padding: 0; } body { font-size: 11pt; } .wide { overflow: visible; } }
+@media print { main { max-width: none; padding: 0; } body { font-size: 10.5pt; } .wide { overflow: visible; }
+  table { font-size: 8.5pt; } th, td { padding-right: 7px; } }
 )css";
 
 std::string rowOf(const std::vector<std::string>& cells, std::size_t words, const std::string& element)

@@ -66,10 +66,10 @@ std::vector<Column> columnsOf(const std::string& task)
 
 std::vector<Column> columnsOfLoop()
 {
-  return {{"localization RMS (px)", [](Score s) { return s.pose_rms_px; }},
-          {"rotation RMS (deg)", [](Score s) { return s.pose_rms_deg; }},
-          {"frames tracked (%)", [](Score s) { return percent(s.tracked_fraction); }},
-          {"time saturated (%)", [](Score s) { return std::optional<double>(100.0 * s.saturated_fraction); }},
+  return {{"pose RMS (px)", [](Score s) { return s.pose_rms_px; }},
+          {"pose RMS (deg)", [](Score s) { return s.pose_rms_deg; }},
+          {"tracked (%)", [](Score s) { return percent(s.tracked_fraction); }},
+          {"saturated (%)", [](Score s) { return std::optional<double>(100.0 * s.saturated_fraction); }},
           {"holds", [](Score s) { return number(s.hold_events); }},
           {"faults", [](Score s) { return number(s.fault_events); }}};
 }

@@ -39,11 +39,11 @@ Box regionOf(const std::vector<const TrialRecord*>& trials)
   return {region.min() - margin, region.max() + margin};
 }
 
-// The middle of what is to be traced; there the close-up looks.
-Eigen::Vector2d middleOf(const TrialRecord& trial)
+// Where the tip is when half of the time is over: it need not come everywhere.
+Eigen::Vector2d placeOfCloseUp(const TrialRecord& trial)
 {
-  if (!trial.path.empty()) return trial.path[trial.path.size() / 2];
-  return trial.tip.empty() ? Eigen::Vector2d(0.0, 0.0) : Eigen::Vector2d(trial.tip.front().tip.head<2>());
+  if (!trial.tip.empty()) return trial.tip[trial.tip.size() / 2].tip.head<2>();
+  return trial.path.empty() ? Eigen::Vector2d(0.0, 0.0) : trial.path[trial.path.size() / 2];
 }
 
 void drawTask(const TrialRecord& trial, const RetinaPanel& panel, SvgCanvas& canvas)
@@ -114,7 +114,7 @@ std::string traceFigure(const std::vector<const TrialRecord*>& trials, const std
   SvgCanvas canvas(kWidth, bottom + 30.0, "way of the tip over the retina");
   const Box region = grownTo(regionOf(trials), width / kPanelHeight_px, kLeast);
   const double closer_height = single ? kPanelHeight_px : kCloseUpHeight_px;
-  const Eigen::Vector2d middle = middleOf(*trials.front());
+  const Eigen::Vector2d middle = placeOfCloseUp(*trials.back());
   const Box close_up = grownTo({middle, middle}, width / closer_height, kCloseUp);
   const RetinaBackground background(trials.front()->retina, region, 0.0, name);
   if (!background.empty()) canvas.insert(background.definition());
