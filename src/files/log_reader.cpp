@@ -90,7 +90,7 @@ std::optional<LogReader::Header> LogReader::whole()
   if (damaged_ && event.utime < *std::min_element(utimes_.begin(), utimes_.end()) - kOverlap_us) return std::nullopt;
   if (isFollowed(header->bytes())) return header;
   // The last one before damage, unless its own length is what is damaged: then the next event lies within it.
-  if (damaged_ || event.number != last_number_ + 1 || holdsTheNext(*header)) return std::nullopt;
+  if (damaged_ || event.number - 1 != last_number_ || holdsTheNext(*header)) return std::nullopt;
   return header;
 }
 
@@ -99,7 +99,7 @@ bool LogReader::holdsTheNext(const Header& header) const
   for (std::size_t at = kLogHeaderBytes; at < header.bytes(); ++at) {
     const std::optional<Header> inner = headerAt(at);
     if (!inner) continue;
-    if (inner->event.number == header.event.number + 1 && inner->event.utime >= header.event.utime) return true;
+    if (inner->event.number - 1 == header.event.number && inner->event.utime >= header.event.utime) return true;
   }
   return false;
 }

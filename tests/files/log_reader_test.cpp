@@ -6,6 +6,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <fstream>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -132,6 +133,17 @@ TEST_F(LogReading, GoesOnAcrossLogsThatWereJoined)
   const Found found = read(bytes + bytes);
   EXPECT_EQ(found.numbers.size(), 20U);
   EXPECT_EQ(found.damage.out_of_order, 1);
+}
+
+TEST_F(LogReading, GoesOnAfterTheLargestNumber)
+{
+  std::string bytes = good(10);
+  put(bytes, 4 * kEvent + 4, 0x7fffffff);
+  put(bytes, 4 * kEvent + 8, 0xffffffff);
+  bytes.insert(6 * kEvent, "junk");
+  std::vector<std::int64_t> left = without(all_, {5});  // before damage, and its number does not follow
+  left[4] = std::numeric_limits<std::int64_t>::max();
+  EXPECT_EQ(read(bytes).numbers, left);
 }
 
 TEST_F(LogReading, OfNothingAndOfNoLogFindsNothing)

@@ -247,7 +247,7 @@ template <class... Messages>
 struct TypesOf<std::tuple<Messages...>> {
   using Types = ::testing::Types<Messages...>;
 };
-TYPED_TEST_SUITE(TableOf, TypesOf<MessageTypes>::Types);
+TYPED_TEST_SUITE(TableOf, TypesOf<MessageTypes>::Types, );
 
 // Any bits that a message can carry: also numbers that are none, and the smallest.
 TYPED_TEST(TableOf, HoldsEveryFieldOfTheDeclarationExactly)
