@@ -52,7 +52,7 @@ WantedFixture fixtureOf(const CommandWords& words, const Sight& sight)
   }
   if (kind == "vessel") {
     fixture.kind = FixtureKind::vessel;
-    fixture.vessel = words.wholeNumber(1, "ID", 0, 1'000'000'000);
+    fixture.vessel = words.wholeNumber(1, "ID", -1, 1'000'000'000);
   } else if (kind == "standoff") {
     fixture.kind = FixtureKind::standoff;
     fixture.standoff = 1e-6 * words.number(1, "UM", 0.0, kHighestStandoff_um);
@@ -196,7 +196,7 @@ const std::vector<WishCommand>& table()
        [](W, S, O wish) { return calibrate(wish); }},
       {{"fixture none|filter|scaling", "what guides in the mode 'assist'"}, "fixture", 3, setFixture},
       {{"fixture point X Y|here", "hold a point of the map, px, or where the tip is seen"}, "fixture", 3, setFixture},
-      {{"fixture vessel ID", "follow a vessel"}, "fixture", 3, setFixture},
+      {{"fixture vessel ID", "follow a vessel; -1: the nearest"}, "fixture", 3, setFixture},
       {{"fixture standoff UM", "keep a height above the retina"}, "fixture", 3, setFixture},
       {{"lambda L", "share of the hand's departure that passes: 0 hard, 1 no fixture"},
        "lambda",

@@ -30,6 +30,10 @@ enum class YamlLists { refused, joined };
 /// @throws ConfigurationError when it cannot be read, is no YAML, has a key twice, or a list where a value should be
 std::vector<Assignment> readYaml(const std::string& path, YamlLists lists = YamlLists::refused);
 
+/// The same of a text that came some other way. @param name  what stands for the file in messages
+std::vector<Assignment> parseYaml(const std::string& name, const std::string& text,
+                                  YamlLists lists = YamlLists::refused);
+
 /// Reads "group.key=value" as it follows `--set`.
 /// @throws ConfigurationError when there is no `=`
 Assignment parseSetting(const std::string& setting);

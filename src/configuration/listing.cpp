@@ -46,7 +46,10 @@ std::string groupHeads(const std::vector<std::string>& path, const std::vector<s
 std::string quoted(const Field& field)
 {
   const bool is_text = std::holds_alternative<std::string*>(field.value) && field.choices.empty();
-  return is_text ? '"' + textOf(field) + '"' : textOf(field);
+  if (!is_text) return textOf(field);
+  std::string text = "\"";
+  for (const char c : textOf(field)) text += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+  return text + '"';
 }
 
 std::string limits(const Field& field) { return allowedText(field) + (field.unit.empty() ? "" : "; " + field.unit); }
@@ -60,7 +63,7 @@ std::string cell(std::string text)
 
 }  // namespace
 
-std::string yamlOf(const std::vector<Field>& fields)
+std::string yamlOf(const std::vector<Field>& fields, YamlComments comments)
 {
   std::string text;
   std::vector<std::string> before;
@@ -68,8 +71,9 @@ std::string yamlOf(const std::vector<Field>& fields)
     const std::vector<std::string> path = split(field.key);
     text += groupHeads(path, before);
     const std::string margin = indent(path.size() - 1);
-    text +=
-        fmt::format("{}# {}\n{}{}: {}  # {}\n", margin, field.doc, margin, path.back(), quoted(field), limits(field));
+    const bool bare = comments == YamlComments::left_out;
+    if (!bare) text += fmt::format("{}# {}\n", margin, field.doc);
+    text += fmt::format("{}{}: {}{}\n", margin, path.back(), quoted(field), bare ? "" : "  # " + limits(field));
     before = path;
   }
   return text;

@@ -8,8 +8,10 @@
 
 namespace eyeslam::configuration {
 
+enum class YamlComments { written, left_out };
+
 /// All options as YAML that `readYaml` reads back, with meaning, unit and range as comments.
-std::string yamlOf(const std::vector<Field>& fields);
+std::string yamlOf(const std::vector<Field>& fields, YamlComments comments = YamlComments::written);
 
 /// All options as Markdown tables, one a group, for docs/configuration.md.
 std::string markdownOf(const std::vector<Field>& fields);
@@ -22,9 +24,9 @@ std::string hashOf(const std::vector<Field>& fields);
 
 /// The same four for an options struct.
 template <class Options>
-std::string yamlOf(Options options)
+std::string yamlOf(Options options, YamlComments comments = YamlComments::written)
 {
-  return yamlOf(fieldsOf(options));
+  return yamlOf(fieldsOf(options), comments);
 }
 template <class Options>
 std::string markdownOf(Options options)

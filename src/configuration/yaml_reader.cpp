@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <fstream>
 #include <set>
+#include <sstream>
 
 #include "eyeslam/configuration/assignment.h"
 
@@ -118,7 +119,30 @@ bool hasSeveralDocuments(std::istream& text)
   return counter.documents() > 1;
 }
 
-YAML::Node parse(const std::string& path)
+YAML::Node parse(const std::string& name, std::istream& text)
+{
+  try {
+    if (hasSeveralDocuments(text)) throw ConfigurationError(name + ": holds several YAML documents; one is wanted");
+    text.clear();
+    text.seekg(0);
+    return YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    throw ConfigurationError(fmt::format("{}:{}: is no YAML: {}", name, error.mark.line + 1, oneLine(error.msg)));
+  }
+}
+
+std::vector<Assignment> flattened(const std::string& name, const YAML::Node& document, YamlLists lists)
+{
+  if (!document || document.IsNull()) return {};
+  if (!document.IsMap()) throw ConfigurationError(name + ": holds no 'key: value' lines");
+  Flattener flattener(name, lists);
+  flattener.add(document, "", 0);
+  return flattener.take();
+}
+
+}  // namespace
+
+std::vector<Assignment> readYaml(const std::string& path, YamlLists lists)
 {
   std::ifstream file(path);
   // A folder opens, but nothing can be read from it.
@@ -126,26 +150,13 @@ YAML::Node parse(const std::string& path)
     if (file.eof()) return {};
     throw ConfigurationError(fmt::format("{}: cannot be read; a YAML file is wanted", path));
   }
-  try {
-    if (hasSeveralDocuments(file)) throw ConfigurationError(path + ": holds several YAML documents; one is wanted");
-    file.clear();
-    file.seekg(0);
-    return YAML::Load(file);
-  } catch (const YAML::Exception& error) {
-    throw ConfigurationError(fmt::format("{}:{}: is no YAML: {}", path, error.mark.line + 1, oneLine(error.msg)));
-  }
+  return flattened(path, parse(path, file), lists);
 }
 
-}  // namespace
-
-std::vector<Assignment> readYaml(const std::string& path, YamlLists lists)
+std::vector<Assignment> parseYaml(const std::string& name, const std::string& text, YamlLists lists)
 {
-  const YAML::Node document = parse(path);
-  if (!document || document.IsNull()) return {};
-  if (!document.IsMap()) throw ConfigurationError(path + ": holds no 'key: value' lines");
-  Flattener flattener(path, lists);
-  flattener.add(document, "", 0);
-  return flattener.take();
+  std::istringstream stream(text);
+  return flattened(name, parse(name, stream), lists);
 }
 
 }  // namespace eyeslam::configuration

@@ -32,20 +32,25 @@ VesselMap emptyMap(const vessel_map_t& tile)
   return map;
 }
 
+// A map's grid follows what its anchor learns, some 0.01 px at a time (tracking/anchor): what was known stays where it
+// is, within this share of a cell, until its tile comes again.
+constexpr double kSameCell = 0.25;
+
 bool sameShape(const VesselMap& map, const vessel_map_t& tile)
 {
-  return map.width == tile.map_width && map.height == tile.map_height && map.origin_x == tile.origin_x_px &&
-         map.origin_y == tile.origin_y_px && map.px_per_cell == tile.px_per_cell;
+  const double tolerance = kSameCell * tile.px_per_cell;
+  return map.width == tile.map_width && map.height == tile.map_height && map.px_per_cell == tile.px_per_cell &&
+         std::abs(map.origin_x - tile.origin_x_px) <= tolerance &&
+         std::abs(map.origin_y - tile.origin_y_px) <= tolerance;
 }
 
 // None where the cells of the two do not coincide.
 std::optional<CellShift> shiftInto(const VesselMap& from, const VesselMap& to)
 {
-  constexpr double kRounding = 1e-6;  // of a cell
   const double column = (from.origin_x - to.origin_x) / to.px_per_cell;
   const double row = (from.origin_y - to.origin_y) / to.px_per_cell;
-  const bool on_grid = from.px_per_cell == to.px_per_cell && std::abs(column - std::round(column)) < kRounding &&
-                       std::abs(row - std::round(row)) < kRounding;
+  const bool on_grid = from.px_per_cell == to.px_per_cell && std::abs(column - std::round(column)) <= kSameCell &&
+                       std::abs(row - std::round(row)) <= kSameCell;
   if (!on_grid) return {};
   return CellShift{static_cast<int>(std::lround(column)), static_cast<int>(std::lround(row))};
 }
@@ -76,6 +81,8 @@ retina::Reason MapAssembler::add(const vessel_map_t& tile)
     reshape(tile);
   }
   map_.version = version;
+  map_.origin_x = tile.origin_x_px;
+  map_.origin_y = tile.origin_y_px;
   map_.um_per_px = tile.um_per_px;
   paste(tile);
   return retina::Reason::none;

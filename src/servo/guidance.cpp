@@ -80,6 +80,7 @@ Reason Guidance::whyNotVessel(const WantedFixture& fixture) const noexcept
 {
   const auto vessels = vesselsOfMap();
   if (!vessels || vessels->empty()) return Reason::no_vessel;
+  if (fixture.vessel < 0) return Reason::none;  // the nearest, whichever it is
   const bool follows = isInForce(fixture) && output_.curve != nullptr;
   return follows || vessels->find(vesselId(fixture)) >= 0 ? Reason::none : Reason::vessel_unknown;
 }
@@ -166,6 +167,7 @@ void Guidance::assign(const WantedFixture& fixture) noexcept
   point.compliance = soft(point.compliance, fixture.lambda);
   fixtures::CurveFixtureOptions vessel = options_.vessel;
   vessel.compliance = soft(vessel.compliance, fixture.lambda);
+  vessel.keeps_to = "vessel";  // another one is taken hold of by letting go first
   const PlaneSide side = options_.standoff_side == "floor" ? PlaneSide::floor : PlaneSide::hold;
   switch (fixture.kind) {
     case FixtureKind::point:

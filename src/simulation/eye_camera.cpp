@@ -38,6 +38,16 @@ Condition withExposure(Condition condition, const EyeCameraOptions& options)
   return condition;
 }
 
+cv::Mat eightBits(const cv::Mat& canvas)
+{
+  cv::Mat bgr(canvas.size(), CV_8UC3);
+  const int from_to[] = {0, 0, 1, 1, 2, 2};
+  cv::Mat white;
+  canvas.convertTo(white, CV_8U, 255.0);
+  cv::mixChannels(&white, 1, &bgr, 1, from_to, 3);
+  return bgr;
+}
+
 }  // namespace
 
 struct EyeCamera::Scene {
@@ -54,7 +64,10 @@ struct EyeCamera::Scene {
     const Fundus retina = preparedFundus(fundus, condition.tissue, fundus.um_per_px / um);
     const double rim = condition.microscope.illumination.rim_radius_px * options.width / kUsualWidth_px;
     const OnceRound motion(options.reach_mm * 1e3 / um);
-    const ViewPlan view = planView(retina, motion, {size, kRoundPoses, kRoundPoses, rim, seed});
+    ViewPlanRequest request{size, kRoundPoses, kRoundPoses, rim, seed, {}};
+    if (options.view_x_mm >= 0.0 && options.view_y_mm >= 0.0)
+      request.start = cv::Point(cvRound(1e3 * options.view_x_mm / um), cvRound(1e3 * options.view_y_mm / um));
+    const ViewPlan view = planView(retina, motion, request);
     const cv::Point2d origin = cv::Point2d(view.area.tl()) + imageCentre(options) - cv::Point2d(view.start);
     return {um, retina.calibre_px(view.area).clone(), canvasOf(retina, view.area), origin};
   }
@@ -76,6 +89,7 @@ EyeCamera::EyeCamera(const EyeCameraOptions& options, const Condition& condition
       um_per_px_(scene.um_per_px),
       vessels_(scene.vessels),
       map_origin_(scene.map_origin),
+      retina_(eightBits(scene.canvas)),
       microscope_(condition.microscope, {size_, options.width / kUsualWidth_px, options.fps, options.duration_s},
                   scene.canvas, scene.map_origin, seed)
 {}

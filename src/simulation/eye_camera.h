@@ -33,6 +33,8 @@ class EyeCamera {
   /// Calibre of the vessels over all that may come into view, px; map coordinates of its pixel (0, 0): `vesselsOrigin`.
   const cv::Mat_<float>& vessels() const { return vessels_; }
   cv::Point2d vesselsOrigin() const { return map_origin_; }
+  /// The same part of the retina under even white light: 8 bit, BGR.
+  const cv::Mat& retina() const { return retina_; }
 
  private:
   struct Scene;
@@ -42,6 +44,7 @@ class EyeCamera {
   double um_per_px_;
   cv::Mat_<float> vessels_;
   cv::Point2d map_origin_;
+  cv::Mat retina_;
   Microscope microscope_;
   std::size_t burnt_ = 0;
   RenderedFrame last_;

@@ -19,15 +19,6 @@ constexpr std::int64_t kClockStep_us = 1'000'000;  // HardwareFault::clock_step
 const Eigen::Vector3d kOffset(0.03, -0.02, 0.05);  // m: of the world in the manipulator's frame; none of them is 0
 
 // z up, so x and y are mirrored against the image: a half turn about x, then the yaw.
-Eigen::Isometry3d placed(const PlacementOptions& options)
-{
-  Eigen::Isometry3d manipulator_T_world = Eigen::Isometry3d::Identity();
-  manipulator_T_world.translation() = kOffset;
-  manipulator_T_world.rotate(Eigen::AngleAxisd(options.yaw_deg * kDegree, Eigen::Vector3d::UnitZ()));
-  manipulator_T_world.rotate(Eigen::AngleAxisd(180.0 * kDegree, Eigen::Vector3d::UnitX()));
-  return manipulator_T_world;
-}
-
 Eigen::Vector3d shaftAtStart(const PlacementOptions& options)
 {
   const double tilt = options.shaft_tilt_deg * kDegree;
@@ -59,10 +50,19 @@ SurgeonTaskAt holdPlace(const Eigen::Vector3d& place)
   };
 }
 
+Eigen::Isometry3d manipulatorTWorld(const PlacementOptions& options)
+{
+  Eigen::Isometry3d manipulator_T_world = Eigen::Isometry3d::Identity();
+  manipulator_T_world.translation() = kOffset;
+  manipulator_T_world.rotate(Eigen::AngleAxisd(options.yaw_deg * kDegree, Eigen::Vector3d::UnitZ()));
+  manipulator_T_world.rotate(Eigen::AngleAxisd(180.0 * kDegree, Eigen::Vector3d::UnitX()));
+  return manipulator_T_world;
+}
+
 Hardware::Hardware(const HardwareOptions& options, SurgeonTaskAt task, messaging::Link& link, std::uint64_t seed)
     : link_(link),
       um_per_px_(simulation::umPerPx(options.camera, seed)),
-      manipulator_T_world_(placed(options.placement)),
+      manipulator_T_world_(simulation::manipulatorTWorld(options.placement)),
       task_(std::move(task)),
       hand_(options.hand, task_(0.0).target.position, seed, kPeriod_s),
       retina_(options.motion, seed, middleOfView(options.camera, um_per_px_), kPeriod_s),

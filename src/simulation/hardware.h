@@ -67,6 +67,9 @@ struct HardwareTruth {
   Eigen::Vector3d spotRetina() const { return eye.world_T_retina.toRetina(spot); }
 };
 
+/// How the manipulator's frame lies in the world, by its placement alone.
+Eigen::Isometry3d manipulatorTWorld(const PlacementOptions& options);
+
 /// Eye, hand, manipulator, laser and the camera's shutter at 1 kHz, behind the messages of real ones: hears
 /// MICRON_COMMAND and LASER_COMMAND, speaks MICRON_STATE and, at 100 Hz and on change, LASER_STATE. Reads no clock:
 /// lock step and real time differ by who calls. Two runs with one seed and the same commands are the same to the byte.

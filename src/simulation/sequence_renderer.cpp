@@ -47,7 +47,7 @@ struct SequenceRenderer::Scene {
     jumpInTheDark(motion, condition, options);
     const Fundus retina = preparedFundus(fundus, condition.tissue, zoom);
     const double rim = condition.microscope.illumination.rim_radius_px * px_scale;
-    const ViewPlan view = planView(retina, motion, {options.size, options.fps, options.frames, rim, options.seed});
+    const ViewPlan view = planView(retina, motion, {options.size, options.fps, options.frames, rim, options.seed, {}});
     const cv::Point2d centre((options.size.width - 1) / 2.0, (options.size.height - 1) / 2.0);
     const cv::Point2d origin = cv::Point2d(view.area.tl()) + centre - cv::Point2d(view.start);
     return {um, zoom, std::move(motion), retina.calibre_px(view.area).clone(), canvasOf(retina, view.area), origin};

@@ -102,7 +102,8 @@ ViewPlan planView(const Fundus& fundus, const ViewMotion& motion, const ViewPlan
   Random random(request.seed, 17);
   ViewPlan best;
   double best_score = -1.0;
-  for (int i = 0; i < kTries; ++i) {
+  if (request.start) best = {*request.start, {}, shareOnKnown(fundus, *request.start, points)};
+  for (int i = 0; i < kTries && !request.start; ++i) {
     const cv::Point start(static_cast<int>(random.uniform(0, size.width)),
                           static_cast<int>(random.uniform(0, size.height)));
     const double known = shareOnKnown(fundus, start, points);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 
 #include "eyeslam/simulation/fundus.h"
 #include "eyeslam/simulation/view_motion.h"
@@ -21,6 +22,7 @@ struct ViewPlanRequest {
   int frames = 1;
   double field_radius = 0.0;  ///< px of the frame; farther points are behind the rim; 0 = no rim
   std::uint64_t seed = 1;
+  std::optional<cv::Point> start;  ///< fundus px, where somebody has chosen the place
 };
 
 /// Tries seeded places and takes one from which the whole motion stays on known retina and begins among vessels.

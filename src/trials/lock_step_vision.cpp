@@ -7,7 +7,17 @@ namespace eyeslam::trials {
 
 namespace {
 
-constexpr std::uint64_t kStream = 61;  // of the seed's random numbers
+constexpr std::uint64_t kStream = 61;             // of the seed's random numbers
+constexpr double kMetal[] = {96.0, 98.0, 100.0};  // BGR grey levels
+
+// What the camera's own noise leaves of a picture without light, or behind metal near the lens.
+void obstruct(Obstruction obstruction, cv::Mat& image)
+{
+  if (obstruction == Obstruction::none) return;
+  constexpr double kNoise = 0.03;  // of the picture: that it is not the same twice
+  image *= kNoise;
+  if (obstruction == Obstruction::covered) image += cv::Scalar(kMetal[0], kMetal[1], kMetal[2]);
+}
 
 }  // namespace
 
@@ -25,6 +35,7 @@ const TrackedView& LockStepVision::look(const simulation::FrameDue& due)
 {
   const simulation::RenderedFrame frame = camera_.render(due);
   image_ = frame.image;
+  obstruct(obstruction_, image_);
   const tracking::TrackResult& result = live_.track(tracker_, image_);
   const bool frozen = result.reason == retina::Reason::frozen;  // nothing was seen
   const auto latency = std::llround(random_.uniform(latency_low_, latency_high_));

@@ -31,6 +31,13 @@ struct LockStepVisionOptions {
   }
 };
 
+/// What stands between retina and camera.
+enum class Obstruction {
+  none,
+  dark,    ///< no light
+  covered  ///< an instrument close to the objective: grey, out of focus
+};
+
 /// A frame that was rendered and tracked, beside the truth; map px.
 struct TrackedView {
   double t_s = 0.0;  ///< mid-exposure, since the start
@@ -51,6 +58,9 @@ class LockStepVision {
   const TrackedView& look(const simulation::FrameDue& due);
   /// Sends what is ready by now.
   void step(const messaging::ReceiveTime& now);
+
+  /// From the next frame on.
+  void setObstruction(Obstruction obstruction) { obstruction_ = obstruction; }
 
   /// The newest frame.
   const TrackedView& newest() const { return newest_; }
@@ -76,6 +86,7 @@ class LockStepVision {
   simulation::Random random_;
   std::deque<Waiting> waiting_;
   TrackedView newest_;
+  Obstruction obstruction_ = Obstruction::none;
   cv::Mat image_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <sodium.h>
 
+#include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 #include <vector>
 

@@ -28,11 +28,11 @@ struct ScenarioFaultOptions {
   static void visit(Self& self, Visitor& visitor)
   {
     using retina::Range;
-    visitor.choice("kind", self.kind,
-                   {"none", "blackout", "tool_over_everything", "operator_lost", "states_stop", "tip_not_finite",
-                    "restart", "clock_step", "power_off", "laser_silent", "interlock_open", "camera_stops",
-                    "camera_freezes"},
-                   "what goes wrong; source: issues 16 and 17");
+    visitor.choice(
+        "kind", self.kind,
+        {"none", "blackout", "tool_over_everything", "operator_lost", "states_stop", "tip_not_finite", "restart",
+         "clock_step", "power_off", "laser_silent", "interlock_open", "camera_stops", "camera_freezes"},
+        "what goes wrong; source: issues 16 and 17");
     visitor.field("at_s", self.at_s, Range{0, 3600}, "s", "after what counts began; source: our choice");
     visitor.field("for_s", self.for_s, Range{0, 3600}, "s", "how long; source: our choice");
     visitor.choice("must", self.must, {"go_on", "hold", "fault"},
@@ -68,7 +68,7 @@ struct LaserTaskOptions {
 
 /// The experiment in the words of a lab (contracts, section 7): what a scenario file says first.
 struct Scenario {
-  std::string name = "trial";
+  std::string name = "trial";  ///< of the file; no key
   std::string task = "trace";
   std::string aid = "hard";
   double lambda = 0.1;
@@ -82,7 +82,7 @@ struct Scenario {
   double duration_s = 20.0;
   double settling_s = 4.0;
   double speed_mm_s = 0.4;
-  double length_mm = 3.0;
+  double length_mm = 2.0;
   double standoff_um = 300.0;
   LaserTaskOptions laser;
   ScenarioFaultOptions fault;
@@ -116,7 +116,7 @@ struct Scenario {
                   "before anything counts, once the aid is on; source: loop study");
     visitor.field("speed_mm_s", self.speed_mm_s, Range{0, 5}, "mm/s", "along the path; source: loop study, 1");
     visitor.field("length_mm", self.length_mm, Range{0.2, 10}, "mm",
-                  "longest path, back and forth; source: loop study, 1");
+                  "longest path, back and forth; source: our choice, within the reach of 2 mm");
     visitor.field("standoff_um", self.standoff_um, Range{50, 5000}, "um",
                   "height of the tip above the retina; source: our choice, the tip touches nothing");
   }
@@ -127,8 +127,7 @@ struct Scenario {
     using retina::Range;
     visitor.choice("motion", self.motion, {"paper", "in_situ", "jerky", "saccade"},
                    "how the eye moves; source: loop study, 1");
-    visitor.choice("condition", self.condition, {"paper", "ex_vivo", "in_vivo"},
-                   "how it looks; source: contracts, 7");
+    visitor.choice("condition", self.condition, {"paper", "ex_vivo", "in_vivo"}, "how it looks; source: contracts, 7");
     visitor.choice("null_at", self.null_at, {"servo", "controller"},
                    "who subtracts the hand's null; source: loop study, 3");
     visitor.field("retina", self.retina, Range{0, 0}, "",

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "eyeslam/burn_plan_t.hpp"
+#include "eyeslam/messaging/link.h"
+#include "eyeslam/servo/calibration.h"
+#include "eyeslam/servo/preparation.h"
+#include "eyeslam/servo/servo.h"
+#include "eyeslam/servo/servo_options.h"
+
+namespace eyeslam::trials {
+
+/// All of `eyeslam-servo` in lock step: the loop, and what the program prepares beside it, at fixed cycles. Given the
+/// same messages in the same milliseconds it sends the same ones, to the byte: in a trial and in the replay of its log.
+class LockStepServo {
+ public:
+  struct Options {
+    servo::ServoOptions servo;
+    servo::PreparationOptions preparation;
+    servo::CalibrationOptions calibration;
+  };
+
+  /// @param plane  of the retina as a second view would give it, for a calibration whose aiming beam was not seen
+  /// @param link   must outlive it
+  LockStepServo(const Options& options, std::optional<servo::RetinaPlane> plane, messaging::Link& link);
+
+  /// One millisecond, after the link was drained with the same time.
+  void cycle(const messaging::ReceiveTime& now);
+
+  const servo::Servo& servo() const { return servo_; }
+  /// Never null.
+  std::shared_ptr<const servo::Preparation> preparation() const { return desk_.newest(); }
+  /// The retina's plane comes from the aiming beam.
+  bool sweptPlane() const { return swept_plane_; }
+  const servo::PreparationDesk& deskForDebug() const { return desk_; }
+
+ private:
+  void prepare(const messaging::ReceiveTime& now);
+  void publishPlan(std::int64_t utime);
+
+  servo::CalibrationOptions calibration_;
+  std::optional<servo::RetinaPlane> plane_;
+  servo::PreparationDesk desk_;
+  servo::Servo servo_;
+  messaging::Publisher<burn_plan_t> plans_;
+  burn_plan_t plan_{};
+  std::int64_t cycles_ = 0, since_plan_ = 0, plan_changes_ = 0;
+  bool swept_plane_ = false;
+};
+
+}  // namespace eyeslam::trials

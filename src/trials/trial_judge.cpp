@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eyeslam/trials/trial_judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "eyeslam/messaging/decoding.h"
+#include "eyeslam/messaging/record_messages.h"
+#include "eyeslam/messaging/servo_messages.h"
+#include "eyeslam/retina/reason.h"
+#include "eyeslam/trials/trial_marks.h"
+
+namespace eyeslam::trials {
+
+namespace {
+
+constexpr double kMicro = 1e-6;
+constexpr double kFar = 60e-6;    // issue 17: pulses more than 60 um off
+constexpr double kMoved = 40e-6;  // the same: explained where the retina moved more
+constexpr std::int64_t kPeriod_us = 1000;
+
+template <class Message, class Use>
+bool takeAs(const files::LogEvent& event, const char* channel, Use use)
+{
+  if (event.channel != channel) return false;
+  thread_local Message message;
+  if (messaging::decode(event.data, event.size, message)) use(message);
+  return true;
+}
+
+retina::Pose2 poseOf(double x, double y, double theta, double scale) { return {x, y, theta, scale}; }
+
+std::string wordOf(std::int16_t reason)
+{
+  return reason == 0 ? "" : std::string(retina::word(static_cast<retina::Reason>(reason)));
+}
+
+}  // namespace
+
+Eigen::Vector2d TrialJudge::RetinaAt::toWorld(const Eigen::Vector2d& place) const
+{
+  return centre + Eigen::Rotation2Dd(theta) * (place - centre) + shift;
+}
+
+void TrialJudge::take(const files::LogEvent& event)
+{
+  takeAs<truth_t>(event, "TRUTH", [this](const truth_t& truth) { take(truth); }) ||
+      takeAs<mark_t>(event, "MARK", [this](const mark_t& mark) { take(mark); }) ||
+      takeAs<retina_pose_t>(event, "RETINA_POSE", [&](const retina_pose_t& pose) { take(pose, event.utime); }) ||
+      takeAs<servo_status_t>(event, "SERVO_STATUS", [this](const servo_status_t& status) { take(status); }) ||
+      takeAs<laser_state_t>(event, "LASER_STATE", [this](const laser_state_t& state) { laser_ = state; }) ||
+      takeAs<operator_t>(event, "OPERATOR", [this](const operator_t& wish) { wish_ = wish; }) ||
+      takeAs<burn_plan_t>(event, "BURN_PLAN", [this](const burn_plan_t& plan) { take(plan); });
+}
+
+void TrialJudge::take(const mark_t& mark)
+{
+  const std::optional<TrialName> name = mark.kind == mark_t::START ? TrialName::parse(mark.note) : std::nullopt;
+  if (name && !setting_) {
+    start_ = mark;
+    name_ = *name;
+    setting_ = settingOf(name->scenario, mark.configuration);
+    if (!scene_) scene_ = std::make_shared<TrialScene>(*setting_, name->seed);
+    tip_judge_.emplace(-1.0);
+  }
+  if (mark.kind == mark_t::NOTE && mark.note == kCountsFromHere) counts_from_ = mark.utime;
+  if (mark.kind != mark_t::STOP || mark.sender != start_.sender) return;
+  over_ = true;
+  stopped_ = mark.utime;
+  never_began_ = mark.note == kNeverBegan;
+}
+
+void TrialJudge::take(const truth_t& truth)
+{
+  if (!setting_ || over_) return;
+  if (retina_.empty()) first_truth_ = truth.utime;
+  um_per_px_ = truth.um_per_px;
+  retina_.push_back({{truth.retina_centre[0], truth.retina_centre[1]},
+                     {truth.retina_shift[0], truth.retina_shift[1]},
+                     truth.retina_theta});
+  if (truth.frame >= 0) {
+    const retina::Pose2 pose = poseOf(truth.frame_x_px, truth.frame_y_px, truth.frame_theta, 1.0);
+    if (!first_frame_) first_frame_ = pose;
+    if (frames_.empty() || frames_.rbegin()->first != truth.frame) frames_.insert({truth.frame, {pose, {}}});
+  }
+  followPulse(truth);
+  if (counts()) judgeTip(truth);
+}
+
+double TrialJudge::errorOf(const Eigen::Vector3d& tip) const
+{
+  const std::vector<Eigen::Vector3d>& path = scene_->centreline();
+  if (setting_->scenario.task == "standoff") return std::abs(tip.z() - path.front().z());
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const Eigen::Vector2d from = path[i].head<2>();
+    const Eigen::Vector2d way = path[std::min(i + 1, path.size() - 1)].head<2>() - from;
+    const double t = std::clamp((tip.head<2>() - from).dot(way) / std::max(way.squaredNorm(), 1e-24), 0.0, 1.0);
+    nearest = std::min(nearest, (from + t * way - tip.head<2>()).squaredNorm());
+  }
+  return std::sqrt(nearest);
+}
+
+void TrialJudge::judgeTip(const truth_t& truth)
+{
+  const Eigen::Vector3d tip(truth.tip);
+  const double t_s = time(truth.utime);
+  if (last_tip_) travelled_.push_back((tip - *last_tip_).norm());
+  last_tip_ = tip;
+  ++truths_;
+  saturated_ += truth.saturated;
+  if (setting_->scenario.isLaser()) return;
+  const double error = errorOf(tip);
+  tip_judge_->step({t_s, tip, error, truth.jerk != 0, Eigen::Vector2d(truth.jerked), truth.saturated != 0});
+  tip_.push_back({t_s, tip, error, true});
+}
+
+void TrialJudge::take(const retina_pose_t& pose, std::int64_t utime)
+{
+  newest_frame_ = pose.tracked ? pose.utime : newest_frame_;
+  const auto frame = frames_.find(pose.frame);
+  if (!counts() || frame == frames_.end()) return;
+  ++frames_seen_;
+  pose_ages_s_.push_back(kMicro * static_cast<double>(utime - pose.utime));
+  if (!pose.tracked) return;
+  ++frames_tracked_;
+  frame->second.seen = poseOf(pose.x_px, pose.y_px, pose.theta, pose.scale);
+}
+
+void TrialJudge::take(const servo_status_t& status)
+{
+  const bool changed = !has_status_ || status.state != status_.state;
+  if (counts() && status.frame_to_command >= 0.0) frame_to_command_s_.push_back(status.frame_to_command);
+  has_status_ = true;
+  status_ = status;
+  if (!changed || over_) return;
+  const bool stands = status.state == servo_status_t::HOLD || status.state == servo_status_t::FAULT;
+  if (counts()) (status.state == servo_status_t::HOLD ? holds_ : faults_) += stands ? 1 : 0;
+  const double t_s = counts_from_ ? time(status.utime) : kMicro * static_cast<double>(status.utime - start_.utime);
+  events_.push_back({t_s, std::string(messaging::word(static_cast<messaging::ServoState>(status.state))),
+                     wordOf(status.reason), stands && setting_ && setting_->scenario.fault.must == "go_on"});
+}
+
+void TrialJudge::take(const burn_plan_t& plan)
+{
+  if (plan.state == burn_plan_t::IN_FORCE) plan_ = plan;
+}
+
+// What the laser itself cannot know: that somebody allowed it.
+bool TrialJudge::mayEmit() const
+{
+  if (!laser_.foot_switch || !laser_.armed || !laser_.interlock_closed) return false;
+  return setting_->scenario.isManual() || (status_.state == servo_status_t::LASER && wish_.arm);
+}
+
+void TrialJudge::followPulse(const truth_t& truth)
+{
+  const bool begins = truth.emitting && (!emitting_ || pulses_.back().number != laser_.pulse);
+  emitting_ = truth.emitting != 0;
+  if (!emitting_) return;
+  if (begins) {
+    const std::int64_t newest = setting_->scenario.isManual() ? truth.frame_utime : newest_frame_;
+    pulses_.push_back({laser_.target, laser_.pulse, truth.utime, 0, newest});
+    if (!mayEmit()) ++violations_;
+  }
+  Pulse& pulse = pulses_.back();
+  pulse.end = truth.utime;
+  pulse.steps += 1.0;
+  pulse.spot += (Eigen::Vector2d(truth.spot) - pulse.spot) / pulse.steps;
+}
+
+Eigen::Vector2d TrialJudge::ontoRetina(double x_px, double y_px) const
+{
+  const double px = kMicro * um_per_px_;
+  const Eigen::Vector2d map_px(x_px, y_px), centre = scene_->middle().head<2>() / px;
+  const bool own_map = !setting_->scenario.isManual() && first_frame_;  // a tracker's begins with its first frame
+  return px * (own_map ? Eigen::Vector2d(centre + *first_frame_ * (map_px - centre)) : map_px);
+}
+
+TrialJudge::RetinaAt TrialJudge::retinaAt(std::int64_t utime) const
+{
+  const std::int64_t step = (utime - first_truth_ + kPeriod_us / 2) / kPeriod_us;
+  return retina_[static_cast<std::size_t>(
+      std::clamp<std::int64_t>(step, 0, static_cast<std::int64_t>(retina_.size()) - 1))];
+}
+
+PulseRecord TrialJudge::recordOf(const Pulse& pulse) const
+{
+  PulseRecord record;
+  record.t_s = time(pulse.end);
+  record.target = pulse.target;
+  record.spot = record.wanted = pulse.spot;
+  record.duration = kMicro * static_cast<double>(pulse.end - pulse.begin + kPeriod_us);
+  double burn = 0.0;
+  for (const burn_target_t& target : plan_->target) {
+    if (target.id != pulse.target) continue;
+    record.wanted = ontoRetina(target.x_px, target.y_px);
+    burn = kMicro * target.burn_um;
+  }
+  record.placement = (record.spot - record.wanted).norm();
+  record.clearance = scene_->vesselDistance(pulse.spot) - 0.5 * burn;
+  record.touched_calibre = scene_->widestWithin(pulse.spot, 0.5 * burn);
+  record.far = record.placement > kFar;
+  const Eigen::Vector2d moved =
+      retinaAt(pulse.end).toWorld(record.wanted) - retinaAt(pulse.newest_frame).toWorld(record.wanted);
+  record.explained = record.far && moved.norm() > kMoved;
+  return record;
+}
+
+}  // namespace eyeslam::trials

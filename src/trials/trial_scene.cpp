@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eyeslam/trials/trial_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+#include "eyeslam/files/file_error.h"
+#include "eyeslam/fixtures/vessel_graph.h"
+#include "eyeslam/simulation/eye_camera.h"
+#include "eyeslam/simulation/fundus_photograph.h"
+#include "eyeslam/simulation/procedural_fundus.h"
+#include "eyeslam/trials/loop_trial.h"
+#include "eyeslam/trials/vessel_choice.h"
+
+namespace eyeslam::trials {
+
+namespace {
+
+constexpr double kMicro = 1e-6;
+constexpr double kLineStep = 10e-6;            // m
+constexpr double kRadius = 20e-6;              // m, of a vessel that a microscope shows clearly
+constexpr double kApart = 150e-6;              // m, what a leaning hand may be off (loop study, 1)
+constexpr double kBeyond = 300e-6;             // m, the same twice
+constexpr double kRetina_mm[] = {18.0, 14.0};  // room for a view beside the disc, wherever the eye goes
+constexpr double kSeam = 1.25;                 // of half a view, that must stay on the retina
+
+cv::Mat read(const std::string& path, int mode)
+{
+  cv::Mat image;
+  try {
+    image = cv::imread(path, mode);
+  } catch (const cv::Exception&) {
+    image.release();
+  }
+  if (image.empty())
+    throw files::FileError(
+        fmt::format("retina {}: not a picture that can be read; 'procedural', JPEG, PNG or TIFF is wanted", path));
+  return image;
+}
+
+simulation::Fundus fundusOf(const TrialSetting& setting, std::uint64_t seed)
+{
+  const std::string& retina = setting.scenario.retina;
+  simulation::ProceduralFundusOptions drawn;
+  drawn.width_mm = kRetina_mm[0];
+  drawn.height_mm = kRetina_mm[1];
+  if (retina == "procedural") return simulation::proceduralFundus(drawn, seed);
+  const std::filesystem::path path(retina);
+  const std::string mask = (path.parent_path() / (path.stem().string() + "_vessels.png")).string();
+  simulation::FundusPhotographOptions options;
+  options.um_per_px = setting.scenario.retina_um_per_px;
+  return simulation::fundusFromPhotograph(read(retina, cv::IMREAD_COLOR), read(mask, cv::IMREAD_GRAYSCALE), options);
+}
+
+// Across the view, left to right.
+std::vector<Eigen::Vector3d> straightLine(const Eigen::Vector3d& middle, double length)
+{
+  std::vector<Eigen::Vector3d> line;
+  for (double x = -0.5 * length; x <= 0.5 * length; x += kLineStep)
+    line.emplace_back(middle + Eigen::Vector3d(x, 0, 0));
+  return line;
+}
+
+retina::VesselMap mapOf(const cv::Mat_<float>& calibre_px, double um_per_px)
+{
+  retina::VesselMap map;
+  map.width = calibre_px.cols;
+  map.height = calibre_px.rows;
+  map.um_per_px = um_per_px;
+  map.version = 1;
+  cv::Mat_<std::uint8_t> calibre, vessel;
+  calibre_px.convertTo(calibre, CV_8U);
+  cv::compare(calibre_px, 0.0, vessel, cv::CMP_GT);
+  map.calibre_px.assign(calibre.begin(), calibre.end());
+  map.probability.assign(vessel.begin(), vessel.end());
+  map.seen.assign(map.probability.size(), 255);
+  return map;
+}
+
+}  // namespace
+
+TrialScene::TrialScene(const TrialSetting& setting, std::uint64_t seed)
+    : fundus_(fundusOf(setting, seed)),
+      camera_(setting.hardware.camera),
+      um_per_px_(simulation::umPerPx(setting.hardware.camera, seed))
+{
+  const Scenario& scenario = setting.scenario;
+  chooseVessel(1e-3 * scenario.length_mm);
+  const simulation::EyeCamera camera(camera_, fundus_, seed);
+  const double px = kMicro * um_per_px_;
+  calibre_px_ = camera.vessels();
+  cv::Mat vessel;
+  cv::compare(calibre_px_, 0.0, vessel, cv::CMP_GT);
+  picture_ = {camera.retina(), vessel, {px * camera.vesselsOrigin().x, px * camera.vesselsOrigin().y}, px};
+  cv::distanceTransform(255 - picture_.vessel, distance_px_, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  const cv::Point2d centre = simulation::imageCentre(camera_);
+  middle_ = {px * centre.x, px * centre.y, 0.0};
+  const Eigen::Vector3d above(0.0, 0.0, -kMicro * scenario.standoff_um);
+  if (scenario.task == "trace") {
+    for (Eigen::Vector3d& place : path_) place += middle_ + above;
+    for (Eigen::Vector3d& place : centreline_) place += middle_ + above;
+    return;
+  }
+  path_ = {middle_ + above};
+  if (scenario.task == "standoff") path_ = straightLine(middle_ + above, std::min(2e-3, 1e-3 * scenario.length_mm));
+  if (scenario.task == "hold") path_ = {middle_ + above + workingPlace()};
+  centreline_ = path_;
+}
+
+// He puts the middle of the vessel under the microscope; the path is about that, for now.
+void TrialScene::chooseVessel(double longest)
+{
+  const double px = kMicro * fundus_.um_per_px;
+  fixtures::VesselGraph graph;
+  graph.update(mapOf(fundus_.calibre_px, fundus_.um_per_px));
+  const Eigen::Vector2d half_view = 0.5 * um_per_px_ * kMicro * Eigen::Vector2d(camera_.width, camera_.height);
+  const Eigen::Vector2d border = kSeam * half_view + Eigen::Vector2d::Constant(1e-3 * camera_.reach_mm);
+  const Eigen::Vector2d size(fundus_.calibre_px.cols, fundus_.calibre_px.rows);
+  const Eigen::Vector2d inset = (border / px).cwiseMin(0.49 * size);
+  const VesselWish wish{{inset, size - inset}, longest / px, kRadius / px, kApart / px, kBeyond / px};
+  const ChosenVessel chosen = vesselToTrace(graph.network(), wish);
+  if (chosen.count == 0)
+    throw std::invalid_argument("retina: no vessel to trace, apart from its neighbours; take another seed");
+  const Eigen::Vector2d middle = chosen.centreline[chosen.centreline.size() / 2];
+  for (const Eigen::Vector2d& place : chosen.centreline) {
+    const Eigen::Vector2d from_middle = px * (place - middle);
+    centreline_.emplace_back(from_middle.x(), from_middle.y(), 0.0);
+  }
+  const auto first = centreline_.begin() + static_cast<std::ptrdiff_t>(chosen.first);
+  path_.assign(first, first + static_cast<std::ptrdiff_t>(chosen.count));
+  if (camera_.view_x_mm >= 0.0 && camera_.view_y_mm >= 0.0) return;
+  camera_.view_x_mm = 1e3 * px * middle.x();
+  camera_.view_y_mm = 1e3 * px * middle.y();
+}
+
+Eigen::Vector2d TrialScene::pixelOf(const Eigen::Vector2d& place) const
+{
+  return (place - picture_.origin) / picture_.m_per_px;
+}
+
+double TrialScene::widestWithin(const Eigen::Vector2d& place, double radius) const
+{
+  const Eigen::Vector2d at = pixelOf(place);
+  const int reach = static_cast<int>(std::ceil(radius / picture_.m_per_px));
+  const cv::Rect whole({}, calibre_px_.size());
+  float widest = 0.0F;
+  for (int y = -reach; y <= reach; ++y) {
+    for (int x = -reach; x <= reach; ++x) {
+      const cv::Point pixel(cvRound(at.x()) + x, cvRound(at.y()) + y);
+      const double distance = std::hypot(pixel.x - at.x(), pixel.y - at.y()) * picture_.m_per_px;
+      if (whole.contains(pixel) && distance <= radius) widest = std::max(widest, calibre_px_(pixel));
+    }
+  }
+  return static_cast<double>(widest) * picture_.m_per_px;
+}
+
+double TrialScene::vesselDistance(const Eigen::Vector2d& place) const
+{
+  const Eigen::Vector2d at = pixelOf(place);
+  const cv::Point pixel(std::clamp(cvRound(at.x()), 0, distance_px_.cols - 1),
+                        std::clamp(cvRound(at.y()), 0, distance_px_.rows - 1));
+  // Half a px: from a cell's centre to the edge that both share.
+  return std::max(0.0, static_cast<double>(distance_px_(pixel)) - 0.5) * picture_.m_per_px;
+}
+
+retina::VesselMap TrialScene::trueMap() const
+{
+  retina::VesselMap map = mapOf(calibre_px_, um_per_px_);
+  map.origin_x = picture_.origin.x() / picture_.m_per_px;
+  map.origin_y = picture_.origin.y() / picture_.m_per_px;
+  return map;
+}
+
+}  // namespace eyeslam::trials

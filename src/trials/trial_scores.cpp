@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The second half of TrialJudge: what it has seen, as a record.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "eyeslam/retina/reason.h"
+#include "eyeslam/trials/error_figures.h"
+#include "eyeslam/trials/trial_judge.h"
+
+namespace eyeslam::trials {
+
+namespace {
+
+constexpr double kMicro = 1e-6;
+constexpr double kOnPath = 50e-6;  // m, that counts as having been there
+constexpr double kDegree = 57.29577951308232;
+constexpr const char* kFates[] = {"pending", "done", "missed", "refused"};  // burn_target_t
+
+double share(std::size_t part, std::size_t whole)
+{
+  return static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(whole, 1));
+}
+
+double mean(const std::vector<double>& values)
+{
+  return values.empty() ? 0.0 : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+template <class Of, class Values>
+std::vector<double> each(const Values& values, const Of& of)
+{
+  std::vector<double> result;
+  std::transform(values.begin(), values.end(), std::back_inserter(result), of);
+  return result;
+}
+
+// Which part of the path the tip came near to.
+double coverage(const std::vector<Eigen::Vector3d>& path, const std::vector<TipSample>& tip)
+{
+  const auto reached = static_cast<std::size_t>(std::count_if(path.begin(), path.end(), [&tip](const auto& place) {
+    return std::any_of(tip.begin(), tip.end(), [&place](const TipSample& sample) {
+      return std::hypot(sample.tip.x() - place.x(), sample.tip.y() - place.y()) <= kOnPath;
+    });
+  }));
+  return share(reached, path.size());
+}
+
+}  // namespace
+
+TrialRecord TrialJudge::record() const
+{
+  if (!setting_) throw std::logic_error("the log has no MARK START of a trial");
+  const Scenario& scenario = setting_->scenario;
+  TrialRecord record;
+  record.task = scenario.task;
+  record.variant = name_.variant;
+  record.configuration = start_.configuration;
+  record.retina = scene_->picture();
+  for (const Eigen::Vector3d& place : scene_->path()) record.path.emplace_back(place.head<2>());
+  record.events = events_;
+  record.pose_ages_s = pose_ages_s_;
+  record.frame_to_command_s = frame_to_command_s_;
+
+  TrialScore& score = record.score;
+  score.scenario = name_.scenario;
+  score.seed = name_.seed;
+  score.aid = scenario.aid;
+  score.motion = scenario.motion;
+  score.condition = scenario.condition;
+  score.retina = scenario.retina;
+  score.camera_hz = scenario.camera_hz;
+  score.latency_ms = scenario.latency_ms;
+  score.version = start_.version;
+  score.config_hash = start_.configuration_hash;
+  score.hold_events = holds_;
+  score.fault_events = faults_;
+  score.duration_s = 1e-3 * static_cast<double>(truths_);
+  score.saturated_fraction = share(static_cast<std::size_t>(saturated_), static_cast<std::size_t>(truths_));
+  score.tip_travel_mm = 1e3 * std::accumulate(travelled_.begin(), travelled_.end(), 0.0);
+  if (!travelled_.empty())
+    score.more.emplace_back("highest_tip_speed_mm_s", 1e6 * *std::max_element(travelled_.begin(), travelled_.end()));
+  if (scenario.isLaser()) {
+    addTargets(record);
+    addPulses(record);
+  } else {
+    addTip(record);
+  }
+  addPoses(record);
+  addVerdict(record);
+  return record;
+}
+
+void TrialJudge::addTip(TrialRecord& record) const
+{
+  const TipErrors errors = tip_judge_->result();
+  record.tip = tip_;
+  for (std::size_t i = 0; i < std::min(record.tip.size(), errors.calm.size()); ++i) record.tip[i].calm = errors.calm[i];
+  if (tip_.empty()) return;
+  const std::vector<double> um = each(tip_, [](const TipSample& sample) { return sample.error / kMicro; });
+  const ErrorFigures figures = errorFigures(um);
+  TrialScore& score = record.score;
+  score.mean_um = mean(um);
+  score.rms_um = figures.rms;
+  score.median_um = figures.median;
+  score.p95_um = figures.p95;
+  score.max_um = figures.max;
+  if (scene_->path().size() > 1) score.path_coverage = coverage(scene_->path(), tip_);
+  std::vector<double> calm;
+  for (const TipSample& sample : record.tip)
+    if (sample.calm) calm.push_back(sample.error / kMicro);
+  score.more.emplace_back("calm_rms_um", errorFigures(calm).rms);
+  score.more.emplace_back("calm_p99_um", errorFigures(calm).p99);
+}
+
+void TrialJudge::addPoses(TrialRecord& record) const
+{
+  if (frames_seen_ == 0 || !first_frame_) return;
+  std::vector<double> degrees;
+  for (const auto& [number, frame] : frames_) {
+    if (!frame.seen) continue;
+    const retina::Pose2 error = (first_frame_->inverse() * frame.truth).inverse() * *frame.seen;
+    record.pose_errors_px.push_back(0.5 * error.translation().norm());
+    degrees.push_back(std::abs(kDegree * error.theta));
+  }
+  record.score.tracked_fraction =
+      share(static_cast<std::size_t>(frames_tracked_), static_cast<std::size_t>(frames_seen_));
+  record.score.pose_rms_px = errorFigures(record.pose_errors_px).rms;
+  record.score.pose_rms_deg = errorFigures(degrees).rms;
+}
+
+void TrialJudge::addTargets(TrialRecord& record) const
+{
+  if (!plan_) return;
+  for (const burn_target_t& target : plan_->target) {
+    const std::string reason =
+        target.reason == 0 ? "" : std::string(retina::word(static_cast<retina::Reason>(target.reason)));
+    record.targets.push_back({target.id, ontoRetina(target.x_px, target.y_px), kMicro * target.burn_um,
+                              kFates[std::clamp<int>(target.state, 0, 3)], reason});
+  }
+}
+
+void TrialJudge::addPulses(TrialRecord& record) const
+{
+  TrialScore& score = record.score;
+  const auto fated = [&record](const char* fate) {
+    return std::count_if(record.targets.begin(), record.targets.end(),
+                         [fate](const PlannedTarget& target) { return target.fate == fate; });
+  };
+  score.targets = static_cast<std::int64_t>(record.targets.size());
+  score.refused = fated("refused");
+  score.missed = fated("missed");
+  score.fired = static_cast<std::int64_t>(pulses_.size());
+  score.interlock_violations = violations_;
+  score.far_pulses = score.far_unexplained = 0;
+  if (!plan_ || pulses_.empty()) return;
+  for (const Pulse& pulse : pulses_) record.pulses.push_back(recordOf(pulse));
+  const ErrorFigures placement =
+      errorFigures(each(record.pulses, [](const PulseRecord& pulse) { return pulse.placement / kMicro; }));
+  score.placement_mean_um = mean(each(record.pulses, [](const PulseRecord& p) { return p.placement / kMicro; }));
+  score.placement_p95_um = placement.p95;
+  score.placement_max_um = placement.max;
+  score.min_vessel_clearance_um = record.pulses.front().clearance / kMicro;
+  for (const PulseRecord& pulse : record.pulses) {
+    *score.far_pulses += pulse.far ? 1 : 0;
+    *score.far_unexplained += pulse.far && !pulse.explained ? 1 : 0;
+    score.min_vessel_clearance_um = std::min(*score.min_vessel_clearance_um, pulse.clearance / kMicro);
+  }
+  score.burns_per_s = static_cast<double>(pulses_.size()) / std::max(1e-3, record.pulses.back().t_s);
+  score.more.emplace_back("waited_for_first_burn_s", record.pulses.front().t_s);
+}
+
+void TrialJudge::addVerdict(TrialRecord& record) const
+{
+  const ScenarioFaultOptions& fault = setting_->scenario.fault;
+  if (never_began_ || counts_from_ == 0) {
+    record.passed = false;
+    record.verdict = "what was asked for never began";
+    return;
+  }
+  if (fault.kind == "none") return;
+  const auto matches = [&fault](const TrialEvent& event) {
+    return event.what == fault.must && (fault.reason.empty() || event.reason == fault.reason);
+  };
+  const bool stood = holds_ + faults_ > 0;
+  record.passed = fault.must == "go_on" ? !stood : std::any_of(events_.begin(), events_.end(), matches);
+  record.verdict = fault.kind + ": must " + fault.must + (fault.reason.empty() ? "" : " with " + fault.reason) +
+                   (*record.passed ? "; it did" : "; it did not");
+}
+
+}  // namespace eyeslam::trials

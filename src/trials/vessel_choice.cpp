@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eyeslam/trials/vessel_choice.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "eyeslam/fixtures/vessel_walk.h"
+
+namespace eyeslam::trials {
+
+using fixtures::Vessel;
+using Way = std::vector<Eigen::Vector2d>;
+
+namespace {
+
+constexpr double kFar_px = 1e5;
+constexpr double kStraight = 0.77;  // cosine: 40 deg between what lies before and behind a point
+constexpr double kLook_px = 15.0;   // over which a way's direction is taken
+constexpr std::size_t kStride = 5;  // points: crowding is no finer
+constexpr double kCrowded = 1.5;    // times its length that a wholly crowded way loses
+
+double medianRadius(const Vessel& vessel)
+{
+  std::vector<double> radii;
+  radii.reserve(vessel.points.size());
+  for (const fixtures::CenterlinePoint& point : vessel.points) radii.push_back(point.radius_px);
+  std::nth_element(radii.begin(), radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2), radii.end());
+  return radii[radii.size() / 2];
+}
+
+fixtures::VesselNetwork wideOnes(const fixtures::VesselNetwork& network, double radius_px)
+{
+  fixtures::VesselNetwork wide;
+  wide.junctions = network.junctions;
+  for (const Vessel& vessel : network.vessels)
+    if (medianRadius(vessel) >= radius_px) wide.vessels.push_back(vessel);
+  return wide;
+}
+
+bool isSmoothAt(const Way& way, std::size_t i)
+{
+  const auto look = static_cast<std::size_t>(kLook_px);
+  if (i < look || i + look >= way.size()) return true;
+  return (way[i] - way[i - look]).normalized().dot((way[i + look] - way[i]).normalized()) >= kStraight;
+}
+
+// A smooth run within the area, far enough from the ends of its way.
+struct Run {
+  std::size_t way = 0, first = 0, count = 0;
+  double length = 0.0;
+};
+
+void addRuns(const Way& way, std::size_t number, const VesselWish& wish, std::vector<Run>& runs)
+{
+  const auto beyond = static_cast<std::size_t>(wish.beyond_px);  // points are a px apart
+  Run run{number, beyond};
+  const auto end = [&](std::size_t next) {
+    if (run.count > 1) runs.push_back(run);
+    run = {number, next};
+  };
+  for (std::size_t i = beyond; i + beyond < way.size(); ++i) {
+    const double step = run.count > 0 ? (way[i] - way[i - 1]).norm() : 0.0;
+    const bool good = wish.area_px.contains(way[i]) && isSmoothAt(way, i) && run.length + step <= wish.longest_px;
+    if (!good) {
+      end(i + 1);
+      continue;
+    }
+    ++run.count;
+    run.length += step;
+  }
+  end(way.size());
+}
+
+bool isOn(const Way& way, const Eigen::Vector2d& place)
+{
+  return std::any_of(way.begin(), way.end(), [&place](const auto& p) { return (p - place).squaredNorm() < 4.0; });
+}
+
+// Share of the way beside which another vessel runs. What leaves it is on the way at its root, and soon apart.
+double crowding(const Way& way, const fixtures::VesselNetwork& network, double apart_px)
+{
+  std::vector<Eigen::Vector2d> others;
+  for (const Vessel& vessel : network.vessels) {
+    if (isOn(way, vessel.points[vessel.points.size() / 2].position_px)) continue;
+    for (std::size_t i = 0; i < vessel.points.size(); i += kStride) others.push_back(vessel.points[i].position_px);
+  }
+  std::size_t crowded = 0, looked = 0;
+  for (std::size_t i = 0; i < way.size(); i += kStride, ++looked) {
+    crowded += std::any_of(others.begin(), others.end(), [&](const Eigen::Vector2d& other) {
+      return (other - way[i]).squaredNorm() < apart_px * apart_px;
+    });
+  }
+  return static_cast<double>(crowded) / static_cast<double>(std::max<std::size_t>(looked, 1));
+}
+
+}  // namespace
+
+ChosenVessel vesselToTrace(const fixtures::VesselNetwork& network, const VesselWish& wish)
+{
+  const fixtures::VesselNetwork wide = wideOnes(network, wish.radius_px);
+  std::vector<Way> ways;
+  std::vector<Run> runs;
+  for (std::size_t first = 0; first < wide.vessels.size(); ++first) {
+    ways.push_back(fixtures::walk(wide, first, kFar_px, fixtures::straightest));
+    addRuns(ways.back(), first, wish, runs);
+  }
+  // Crowding only shortens, and takes longer to find out.
+  std::stable_sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.length > b.length; });
+  ChosenVessel best;
+  double best_worth = 0.0;
+  const auto beyond = static_cast<std::ptrdiff_t>(wish.beyond_px);
+  for (const Run& run : runs) {
+    if (run.length <= best_worth) break;
+    const auto begin = ways[run.way].begin() + static_cast<std::ptrdiff_t>(run.first);
+    const auto end = begin + static_cast<std::ptrdiff_t>(run.count);
+    const double worth = run.length * (1.0 - kCrowded * crowding({begin, end}, network, wish.apart_px));
+    if (worth <= best_worth) continue;
+    best_worth = worth;
+    best = {{begin - beyond, end + beyond}, static_cast<std::size_t>(beyond), run.count};
+  }
+  return best;
+}
+
+}  // namespace eyeslam::trials

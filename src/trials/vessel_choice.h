@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <vector>
+
+#include "eyeslam/fixtures/vessel_graph.h"
+
+namespace eyeslam::trials {
+
+/// The vessel that a surgeon would choose to trace: long, wide enough to see, smooth and apart from others. Map frame,
+/// full-resolution px.
+struct VesselWish {
+  Eigen::AlignedBox2d area_px;  ///< in which it is looked for
+  double longest_px = 0.0;      ///< no longer a way
+  double radius_px = 0.0;       ///< median of a vessel that is wide enough
+  double apart_px = 0.0;        ///< nearer to another vessel than this is crowded
+  double beyond_px = 0.0;       ///< for so far the vessel must go on beyond both ends
+};
+
+/// A stretch of a vessel.
+struct ChosenVessel {
+  std::vector<Eigen::Vector2d> centreline;  ///< what is to be traced and what lies beyond both ends of that
+  std::size_t first = 0, count = 0;         ///< of it, what is to be traced; count 0: nothing is wide enough
+};
+
+/// Straight on through junctions, cut where it turns sharply.
+ChosenVessel vesselToTrace(const fixtures::VesselNetwork& network, const VesselWish& wish);
+
+}  // namespace eyeslam::trials
