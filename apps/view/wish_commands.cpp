@@ -28,7 +28,7 @@ Eigen::Vector2d pointOf(const CommandWords& words, const Sight& sight)
     return {words.number(1, "X", -kFarthest_px, kFarthest_px), words.number(2, "Y", -kFarthest_px, kFarthest_px)};
   }
   words.expectAtMost(2);
-  if (!sight.tip_px) throw CommandError("fixture point here: no tip is seen in a tracked frame");
+  if (!sight.tip_px) throw CommandError("fixture " + words.text(0, "") + " here: no tip is seen in a tracked frame");
   return *sight.tip_px;
 }
 
@@ -52,7 +52,12 @@ WantedFixture fixtureOf(const CommandWords& words, const Sight& sight)
   }
   if (kind == "vessel") {
     fixture.kind = FixtureKind::vessel;
-    fixture.vessel = words.wholeNumber(1, "ID", -1, 1'000'000'000);
+    const bool by_place = words.arguments() > 2 || words.text(1, "ID, X Y or 'here'") == "here";
+    if (by_place) {
+      fixture.point_px = pointOf(words, sight);
+      return fixture;
+    }
+    fixture.vessel = words.wholeNumber(1, "ID", 0, 1'000'000'000);
   } else if (kind == "standoff") {
     fixture.kind = FixtureKind::standoff;
     fixture.standoff = 1e-6 * words.number(1, "UM", 0.0, kHighestStandoff_um);
@@ -69,7 +74,8 @@ std::string textOf(const WantedFixture& fixture, const std::string& kind)
     case FixtureKind::point:
       return fmt::format("fixture: point at {:.1f} {:.1f} px of the map", fixture.point_px.x(), fixture.point_px.y());
     case FixtureKind::vessel:
-      return fmt::format("fixture: vessel {}", fixture.vessel);
+      if (fixture.vessel >= 0) return fmt::format("fixture: vessel {}", fixture.vessel);
+      return fmt::format("fixture: vessel at {:.1f} {:.1f} px of the map", fixture.point_px.x(), fixture.point_px.y());
     case FixtureKind::standoff:
       return fmt::format("fixture: standoff of {:.0f} um", 1e6 * fixture.standoff);
     default:
@@ -196,7 +202,7 @@ const std::vector<WishCommand>& table()
        [](W, S, O wish) { return calibrate(wish); }},
       {{"fixture none|filter|scaling", "what guides in the mode 'assist'"}, "fixture", 3, setFixture},
       {{"fixture point X Y|here", "hold a point of the map, px, or where the tip is seen"}, "fixture", 3, setFixture},
-      {{"fixture vessel ID", "follow a vessel; -1: the nearest"}, "fixture", 3, setFixture},
+      {{"fixture vessel ID", "follow a vessel"}, "fixture", 4, setFixture},
       {{"fixture standoff UM", "keep a height above the retina"}, "fixture", 3, setFixture},
       {{"lambda L", "share of the hand's departure that passes: 0 hard, 1 no fixture"},
        "lambda",

@@ -9,7 +9,8 @@ namespace {
 bool goTogether(const WantedFixture& fixture)
 {
   return (fixture.kind == FixtureKind::vessel || fixture.vessel == -1) &&
-         (fixture.kind == FixtureKind::point || fixture.point_px.isZero(0.0)) &&
+         (fixture.kind == FixtureKind::point || (fixture.kind == FixtureKind::vessel && fixture.vessel == -1) ||
+          fixture.point_px.isZero(0.0)) &&
          (fixture.kind == FixtureKind::standoff || fixture.standoff == 0.0);
 }
 

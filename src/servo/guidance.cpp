@@ -31,7 +31,7 @@ bool same(const messaging::Zone& a, const messaging::Zone& b)
 }
 
 // Ids of the graph are ints.
-int vesselId(const WantedFixture& fixture)
+int idOf(const WantedFixture& fixture)
 {
   return fixture.vessel <= std::numeric_limits<int>::max() ? static_cast<int>(fixture.vessel)
                                                            : std::numeric_limits<int>::max();
@@ -80,9 +80,17 @@ Reason Guidance::whyNotVessel(const WantedFixture& fixture) const noexcept
 {
   const auto vessels = vesselsOfMap();
   if (!vessels || vessels->empty()) return Reason::no_vessel;
-  if (fixture.vessel < 0) return Reason::none;  // the nearest, whichever it is
   const bool follows = isInForce(fixture) && output_.curve != nullptr;
   return follows || vessels->find(vesselId(fixture)) >= 0 ? Reason::none : Reason::vessel_unknown;
+}
+
+// Without an id it is the one that the human points at.
+int Guidance::vesselId(const WantedFixture& fixture) const noexcept
+{
+  const auto vessels = vesselsOfMap();
+  if (fixture.vessel >= 0 || !vessels) return idOf(fixture);
+  const auto place = vessels->nearest(kMicro * frame_.um_per_px * fixture.point_px, 1e-6 * options_.vessel.capture_um);
+  return place ? vessels->id(place->vessel) : std::numeric_limits<int>::max();
 }
 
 Reason Guidance::whyNot(const OperatorWish& wish) const noexcept
@@ -167,7 +175,6 @@ void Guidance::assign(const WantedFixture& fixture) noexcept
   point.compliance = soft(point.compliance, fixture.lambda);
   fixtures::CurveFixtureOptions vessel = options_.vessel;
   vessel.compliance = soft(vessel.compliance, fixture.lambda);
-  vessel.keeps_to = "vessel";  // another one is taken hold of by letting go first
   const PlaneSide side = options_.standoff_side == "floor" ? PlaneSide::floor : PlaneSide::hold;
   switch (fixture.kind) {
     case FixtureKind::point:

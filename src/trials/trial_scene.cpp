@@ -25,7 +25,7 @@ namespace {
 constexpr double kMicro = 1e-6;
 constexpr double kLineStep = 10e-6;            // m
 constexpr double kRadius = 20e-6;              // m, of a vessel that a microscope shows clearly
-constexpr double kApart = 150e-6;              // m, what a leaning hand may be off (loop study, 1)
+constexpr double kApart = 200e-6;              // m, what a leaning hand may be off (loop study, 1)
 constexpr double kBeyond = 300e-6;             // m, the same twice
 constexpr double kRetina_mm[] = {18.0, 14.0};  // room for a view beside the disc, wherever the eye goes
 constexpr double kSeam = 1.25;                 // of half a view, that must stay on the retina

@@ -113,7 +113,8 @@ ChosenVessel vesselToTrace(const fixtures::VesselNetwork& network, const VesselW
     if (run.length <= best_worth) break;
     const auto begin = ways[run.way].begin() + static_cast<std::ptrdiff_t>(run.first);
     const auto end = begin + static_cast<std::ptrdiff_t>(run.count);
-    const double worth = run.length * (1.0 - kCrowded * crowding({begin, end}, network, wish.apart_px));
+    const double worth =
+        run.length * (1.0 - kCrowded * crowding({begin - beyond, end + beyond}, network, wish.apart_px));
     if (worth <= best_worth) continue;
     best_worth = worth;
     best = {{begin - beyond, end + beyond}, static_cast<std::size_t>(beyond), run.count};

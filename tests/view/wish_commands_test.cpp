@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Lines, Refusals,
                          testing::Values("ready now", "fixture", "fixture magic", "fixture point", "fixture point 1",
                                          "fixture point x 2", "fixture point 1 nan", "fixture point 1 1e9",
                                          "fixture point 1 2 3", "fixture point here 3", "fixture vessel",
-                                         "fixture vessel -1", "fixture vessel 1.5", "fixture standoff -1",
+                                         "fixture vessel -1", "fixture vessel 1.5", "fixture vessel 1 x", "fixture vessel 1 2 3", "fixture standoff -1",
                                          "fixture standoff 30000", "fixture filter 3", "lambda", "lambda 2",
                                          "lambda -0.1", "lambda x", "zone", "zone 1 2 3 4", "zone 1 2 3 4 5",
                                          "zone 1 2 3 4 5 x", "arm"));
