@@ -5,6 +5,8 @@
 #include <iterator>
 #include <utility>
 
+#include "eyeslam/messaging/decoding.h"
+
 namespace eyeslam::replay {
 
 std::vector<ChannelFindings> LogSurvey::refused() const
@@ -52,7 +54,7 @@ void LogSurveyor::note(const SortedEvent& event)
     return;
   }
   LoggedMark logged{event.since_us, {}};
-  if (decode(event.event, logged.mark)) survey_.marks.push_back(std::move(logged));
+  if (messaging::decode(event.event.data, event.event.size, logged.mark)) survey_.marks.push_back(std::move(logged));
 }
 
 LogSurvey LogSurveyor::survey(const SortedLog& log) const

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "eyeslam/messaging/decoding.h"
 #include "eyeslam/replay/device_fields.h"
 #include "eyeslam/replay/record_fields.h"
 #include "eyeslam/replay/servo_fields.h"
@@ -114,7 +115,7 @@ template <class Message>
 bool appendMessage(const files::LogEvent& event, fmt::memory_buffer& line)
 {
   Message message{};
-  if (!decode(event, message)) return false;
+  if (!messaging::decode(event.data, event.size, message)) return false;
   Cells cells(line);
   visitFields(message, cells);
   return true;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "eyeslam/files/file_error.h"
+#include "eyeslam/messaging/decoding.h"
 
 namespace eyeslam::replay {
 namespace {
@@ -133,7 +134,7 @@ void MessageTables::write(Channel& channel, const SortedEvent& event)
 void MessageTables::writeTargets(Channel& channel, const SortedEvent& event)
 {
   burn_plan_t plan{};
-  if (!decode(event.event, plan)) return;
+  if (!messaging::decode(event.event.data, event.event.size, plan)) return;
   for (const burn_target_t& target : plan.target) {
     line_.clear();
     appendPlace(event, line_);

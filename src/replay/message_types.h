@@ -63,12 +63,4 @@ JudgedEvent judge(const files::LogEvent& event);
 /// Of an event that is ours, without decoding the rest: all types begin with it.
 messaging::MessageHeader headerOf(const files::LogEvent& event);
 
-/// Decodes an event that was judged ours and to be of this type. @return whether it worked
-template <class Message>
-bool decode(const files::LogEvent& event, Message& message)
-{
-  const int size = static_cast<int>(event.size);
-  return message.decode(event.data, 0, size) == size;
-}
-
 }  // namespace eyeslam::replay

@@ -54,13 +54,16 @@ std::optional<TrialName> TrialName::parse(const std::string& note)
 }
 
 Trial::Trial(const TrialSetting& setting, const TrialName& name, const std::string& version, const TrialScene& scene,
-             EventTap::Each each)
+             Each each)
     : setting_(setting),
       scene_(scene),
       name_(name),
       version_(version),
       link_("memq://", sessionOf(name), std::nullopt),
-      tap_(link_, std::move(each)),
+      tap_(link_,
+           [each = std::move(each)](const messaging::TappedEvent& event) {
+             each({event.number, event.utime, event.channel, event.data, event.size});
+           }),
       marks_(link_),
       surgeon_(setting, scene, link_),
       hardware_(

@@ -7,12 +7,13 @@
 #include <optional>
 #include <string>
 
+#include "eyeslam/files/log_event.h"
 #include "eyeslam/mark_t.hpp"
+#include "eyeslam/messaging/event_tap.h"
 #include "eyeslam/messaging/link.h"
 #include "eyeslam/messaging/record_messages.h"
 #include "eyeslam/simulation/hardware.h"
 #include "eyeslam/simulation/truth_publisher.h"
-#include "eyeslam/trials/event_tap.h"
 #include "eyeslam/trials/lock_step_servo.h"
 #include "eyeslam/trials/lock_step_vision.h"
 #include "eyeslam/trials/manual_laser.h"
@@ -36,14 +37,16 @@ struct TrialName {
 /// tracker, the servo, a human at the console, and nothing but messages between them on one link. Everything is decided
 /// by setting, variant and seed: two runs send the same bytes.
 ///
-///   Trial trial(setting, {"vessel_tracing", "aid=hard", 3}, version, scene, [&](const LogEvent& e) { log.append(e);
-///   }); while (trial.step()) progress.show(trial.time());
+///   Trial trial(setting, {"vessel_tracing", "aid=hard", 3}, version, scene, writeToLog);
+///   while (trial.step()) progress.show(trial.time());
 class Trial {
  public:
+  using Each = std::function<void(const files::LogEvent&)>;
+
   /// @param setting, scene  must outlive it
-  /// @param each            hears every message in the order of sending
+  /// @param each            hears every message in the order of sending; what it throws comes out of `step`
   Trial(const TrialSetting& setting, const TrialName& name, const std::string& version, const TrialScene& scene,
-        EventTap::Each each);
+        Each each);
 
   /// One millisecond. @return whether it goes on
   bool step();
@@ -69,7 +72,7 @@ class Trial {
   TrialName name_;
   std::string version_;
   messaging::Link link_;
-  EventTap tap_;
+  messaging::EventTap tap_;
   messaging::Publisher<mark_t> marks_;
   TrialSurgeon surgeon_;
   simulation::Hardware hardware_;

@@ -19,6 +19,7 @@ constexpr double kMicro = 1e-6;
 constexpr double kFar = 60e-6;    // issue 17: pulses more than 60 um off
 constexpr double kMoved = 40e-6;  // the same: explained where the retina moved more
 constexpr std::int64_t kPeriod_us = 1000;
+constexpr double kPeriod_s = 1e-3;
 
 template <class Message, class Use>
 bool takeAs(const files::LogEvent& event, const char* channel, Use use)
@@ -84,8 +85,19 @@ void TrialJudge::take(const truth_t& truth)
     if (!first_frame_) first_frame_ = pose;
     if (frames_.empty() || frames_.rbegin()->first != truth.frame) frames_.insert({truth.frame, {pose, {}}});
   }
+  watchSpeed(truth);
   followPulse(truth);
   if (counts()) judgeTip(truth);
+}
+
+// In the world, where the manipulator is.
+void TrialJudge::watchSpeed(const truth_t& truth)
+{
+  Eigen::Vector3d tip(truth.tip);
+  tip.head<2>() = retina_.back().toWorld(tip.head<2>());
+  tip.z() += truth.retina_shift[2];
+  if (last_world_tip_) fastest_tip_ = std::max(fastest_tip_, (tip - *last_world_tip_).norm() / kPeriod_s);
+  last_world_tip_ = tip;
 }
 
 double TrialJudge::errorOf(const Eigen::Vector3d& tip) const
@@ -110,6 +122,7 @@ void TrialJudge::judgeTip(const truth_t& truth)
   last_tip_ = tip;
   ++truths_;
   saturated_ += truth.saturated;
+  worst_pivot_ = std::max(worst_pivot_, truth.pivot_error);
   if (setting_->scenario.isLaser()) return;
   const double error = errorOf(tip);
   tip_judge_->step({t_s, tip, error, truth.jerk != 0, Eigen::Vector2d(truth.jerked), truth.saturated != 0});
@@ -123,7 +136,7 @@ void TrialJudge::take(const retina_pose_t& pose, std::int64_t utime)
   if (!counts() || frame == frames_.end()) return;
   ++frames_seen_;
   pose_ages_s_.push_back(kMicro * static_cast<double>(utime - pose.utime));
-  if (!pose.tracked) return;
+  if (!pose.tracked) return tip_judge_->spoilt(time(pose.utime));
   ++frames_tracked_;
   frame->second.seen = poseOf(pose.x_px, pose.y_px, pose.theta, pose.scale);
 }

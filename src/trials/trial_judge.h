@@ -68,6 +68,7 @@ class TrialJudge {
   void take(const retina_pose_t& pose, std::int64_t utime);
   void take(const servo_status_t& status);
   void take(const burn_plan_t& plan);
+  void watchSpeed(const truth_t& truth);
   void judgeTip(const truth_t& truth);
   void followPulse(const truth_t& truth);
   bool mayEmit() const;
@@ -98,7 +99,8 @@ class TrialJudge {
   std::int64_t first_truth_ = 0;
   std::vector<RetinaAt> retina_;  // a millisecond each, from first_truth_ on
   double um_per_px_ = 0.0;
-  std::optional<Eigen::Vector3d> last_tip_;
+  std::optional<Eigen::Vector3d> last_tip_, last_world_tip_;
+  double fastest_tip_ = 0.0, worst_pivot_ = 0.0;  // m/s, m
 
   std::map<std::int64_t, SeenFrame> frames_;
   std::optional<retina::Pose2> first_frame_;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "eyeslam/trials/jump_recovery.h"
 #include "eyeslam/trials/trial_score.h"
 
 namespace eyeslam::trials {
@@ -66,9 +67,13 @@ struct TrialRecord {
   RetinaPicture retina;
   std::vector<Eigen::Vector2d> path;  ///< what was to be traced, retina frame, m; of hold the place alone
   std::vector<TipSample> tip;         ///< a sample a millisecond; empty of laser trials
+  std::vector<Jump> jumps;            ///< jerks and saccades, and when the tip was back; empty of laser trials
   std::vector<PulseRecord> pulses;
   std::vector<PlannedTarget> targets;
   std::vector<TrialEvent> events;
+  double fastest_tip = 0.0;                ///< m/s, from the start, calibration included
+  double worst_pivot = 0.0;                ///< m, of the shaft from the commanded centre of motion
+  std::int64_t frames = 0, tracked = 0;    ///< whose poses came
   std::vector<double> pose_errors_px;      ///< half-resolution px, a tracked frame each
   std::vector<double> pose_ages_s;         ///< of the newest pose at its arrival, since mid-exposure
   std::vector<double> frame_to_command_s;  ///< mid-exposure to the first command that uses it

@@ -62,6 +62,10 @@ TrialRecord TrialJudge::record() const
   record.events = events_;
   record.pose_ages_s = pose_ages_s_;
   record.frame_to_command_s = frame_to_command_s_;
+  record.fastest_tip = fastest_tip_;
+  record.worst_pivot = worst_pivot_;
+  record.frames = frames_seen_;
+  record.tracked = frames_tracked_;
 
   TrialScore& score = record.score;
   score.scenario = name_.scenario;
@@ -96,6 +100,7 @@ void TrialJudge::addTip(TrialRecord& record) const
 {
   const TipErrors errors = tip_judge_->result();
   record.tip = tip_;
+  record.jumps = errors.jumps;
   for (std::size_t i = 0; i < std::min(record.tip.size(), errors.calm.size()); ++i) record.tip[i].calm = errors.calm[i];
   if (tip_.empty()) return;
   const std::vector<double> um = each(tip_, [](const TipSample& sample) { return sample.error / kMicro; });

@@ -16,25 +16,35 @@ namespace {
 constexpr double kFar_px = 1e5;
 constexpr double kStraight = 0.77;  // cosine: 40 deg between what lies before and behind a point
 constexpr double kLook_px = 15.0;   // over which a way's direction is taken
+constexpr double kWidest = 2.5;     // of the least radius: no vessel of an eye is wider (facts, D4)
+constexpr double kEven = 1.4;       // of a vessel's median radius
 constexpr std::size_t kStride = 5;  // points: crowding is no finer
 constexpr double kCrowded = 1.5;    // times its length that a wholly crowded way loses
 
-double medianRadius(const Vessel& vessel)
+double radiusAt(const Vessel& vessel, double quantile)
 {
   std::vector<double> radii;
   radii.reserve(vessel.points.size());
   for (const fixtures::CenterlinePoint& point : vessel.points) radii.push_back(point.radius_px);
-  std::nth_element(radii.begin(), radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2), radii.end());
-  return radii[radii.size() / 2];
+  const auto rank = static_cast<std::ptrdiff_t>(quantile * static_cast<double>(radii.size() - 1));
+  std::nth_element(radii.begin(), radii.begin() + rank, radii.end());
+  return radii[static_cast<std::size_t>(rank)];
 }
 
-fixtures::VesselNetwork wideOnes(const fixtures::VesselNetwork& network, double radius_px)
+// Where two vessels lie upon each other the picture has one that is too wide, in places.
+bool isOneVessel(const Vessel& vessel, const VesselWish& wish)
 {
-  fixtures::VesselNetwork wide;
-  wide.junctions = network.junctions;
+  const double radius = radiusAt(vessel, 0.5);
+  return radius >= wish.radius_px && radius <= kWidest * wish.radius_px && radiusAt(vessel, 0.95) <= kEven * radius;
+}
+
+fixtures::VesselNetwork clearOnes(const fixtures::VesselNetwork& network, const VesselWish& wish)
+{
+  fixtures::VesselNetwork clear;
+  clear.junctions = network.junctions;
   for (const Vessel& vessel : network.vessels)
-    if (medianRadius(vessel) >= radius_px) wide.vessels.push_back(vessel);
-  return wide;
+    if (isOneVessel(vessel, wish)) clear.vessels.push_back(vessel);
+  return clear;
 }
 
 bool isSmoothAt(const Way& way, std::size_t i)
@@ -97,11 +107,11 @@ double crowding(const Way& way, const fixtures::VesselNetwork& network, double a
 
 ChosenVessel vesselToTrace(const fixtures::VesselNetwork& network, const VesselWish& wish)
 {
-  const fixtures::VesselNetwork wide = wideOnes(network, wish.radius_px);
+  const fixtures::VesselNetwork clear = clearOnes(network, wish);
   std::vector<Way> ways;
   std::vector<Run> runs;
-  for (std::size_t first = 0; first < wide.vessels.size(); ++first) {
-    ways.push_back(fixtures::walk(wide, first, kFar_px, fixtures::straightest));
+  for (std::size_t first = 0; first < clear.vessels.size(); ++first) {
+    ways.push_back(fixtures::walk(clear, first, kFar_px, fixtures::straightest));
     addRuns(ways.back(), first, wish, runs);
   }
   // Crowding only shortens, and takes longer to find out.

@@ -5,7 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <rapidcheck/gtest.h>
+#include <algorithm>
+#include <cstdlib>
 #include <fstream>
+#include <string>
 
 #include "configuration/test_options.h"
 #include "eyeslam/configuration/assignment.h"
@@ -30,6 +33,39 @@ RC_GTEST_PROP(Listing, YamlReadsBackToTheSameValues, (double gain, int turns, bo
   options.lens.turns = std::abs(turns % 11);
   options.lens.coated = coated;
   RC_ASSERT(canonicalOf(readBack(yamlOf(options))) == canonicalOf(options));
+}
+
+/// What no YAML says by itself: a text that any quote or backslash may stand in.
+struct NoteOptions {
+  std::string note = "none";
+  CameraOptions camera;
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor& visitor)
+  {
+    visitor.field("note", self.note, retina::Range{}, "", "of who set it; source: the user");
+    visitor.group("camera", self.camera);
+  }
+};
+
+RC_GTEST_PROP(Listing, YamlWithoutCommentsReadsBackToTheSameValues, (double gain, int turns))
+{
+  NoteOptions options;
+  options.camera.gain = gain;
+  options.camera.lens.turns = std::abs(turns % 11);
+  options.note = *rc::gen::container<std::string>(rc::gen::elementOf(std::string("ab \"'\\:#,[]{}&*!|>%@`-?=.")));
+  const std::string yaml = yamlOf(options, YamlComments::left_out);
+  RC_ASSERT(canonicalOf(applied(NoteOptions{}, parseYaml("text", yaml))) == canonicalOf(options));
+  // No comment but what stands within a text.
+  RC_ASSERT(std::count(yaml.begin(), yaml.end(), '#') == std::count(options.note.begin(), options.note.end(), '#'));
+}
+
+TEST(Listing, YamlQuotesQuotesAndBackslashes)
+{
+  NoteOptions options;
+  options.note = R"(a "b" c:\d\n # e)";
+  EXPECT_THAT(yamlOf(options, YamlComments::left_out), HasSubstr("note: \"a \\\"b\\\" c:\\\\d\\\\n # e\"\n"));
+  EXPECT_EQ(applied(NoteOptions{}, parseYaml("text", yamlOf(options))).note, options.note);
 }
 
 TEST(Listing, YamlTellsMeaningUnitAndRange)

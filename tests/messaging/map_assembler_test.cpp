@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "eyeslam/messaging/retina_messages.h"
@@ -107,6 +108,52 @@ TEST(MapAssembler, KeepsWhatItKnowsWhenTheMapGrows)
   assembler.add(grown.front());
   EXPECT_EQ(assembler.unknownCells(), 80U * 80U - 40U * 40U - 20U * 20U);
   EXPECT_EQ(assembler.map().seen[assembler.map().index(20, 20)], mapOf(0, 0, 40, 40).seen[0]);
+}
+
+VesselMap movedBy(VesselMap map, double x_px, double y_px, std::uint64_t version)
+{
+  map.origin_x += x_px;
+  map.origin_y += y_px;
+  map.version = version;
+  return map;
+}
+
+// What the tracker's anchor learns moves the whole grid, a tile at another place than the one before.
+TEST(MapAssembler, KeepsWhatItKnowsWhileTheGridMovesByHundredthsOfAPixelBetweenTiles)
+{
+  const VesselMap map = mapOf(-7, 3, 80, 70);
+  const std::vector<vessel_map_t> tiles = tilesOf(map);
+  ASSERT_GT(tiles.size(), 2U);
+  MapAssembler assembler;
+  VesselMap moved = map;
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    moved = movedBy(moved, 0.03, -0.02, 1 + i);
+    assembler.add(tilesOf(moved)[i]);
+  }
+  EXPECT_TRUE(assembler.isComplete());
+  EXPECT_TRUE(same(assembler.map(), moved)) << "its place is the newest tile's";
+}
+
+TEST(MapAssembler, KeepsWhatItKnowsWhenTheMapGrowsAndItsGridMovesALittle)
+{
+  MapAssembler assembler;
+  for (const vessel_map_t& tile : tilesOf(mapOf(0, 0, 40, 40))) assembler.add(tile);
+  const VesselMap grown = movedBy(mapOf(-20, -20, 80, 80), 0.04, -0.04, 2);
+  assembler.add(tilesOf(grown).front());
+  EXPECT_EQ(assembler.unknownCells(), 80U * 80U - 40U * 40U - 20U * 20U);
+  EXPECT_EQ(assembler.map().seen[assembler.map().index(20, 20)], mapOf(0, 0, 40, 40).seen[0]);
+  EXPECT_EQ(assembler.map().origin_x, grown.origin_x);
+}
+
+TEST(MapAssembler, BeginsAnewWhenTheGridMovesByHalfACell)
+{
+  for (const auto& [x_px, y_px] : {std::pair{1.0, 0.0}, {0.0, -1.0}, {0.6, 0.0}}) {
+    MapAssembler assembler;
+    const VesselMap map = mapOf(0, 0, 40, 40);
+    for (const vessel_map_t& tile : tilesOf(map)) assembler.add(tile);
+    assembler.add(tilesOf(movedBy(map, x_px, y_px, 2)).front());
+    EXPECT_EQ(assembler.unknownCells(), 1200U) << x_px << " " << y_px;
+  }
 }
 
 TEST(MapAssembler, BeginsAnewWithAnotherMapAndWithAnotherGrid)

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "eyeslam/trials/event_tap.h"
+#include "eyeslam/messaging/event_tap.h"
 
-#include <exception>
 #include <lcm/lcm-cpp.hpp>
 #include <utility>
 
-namespace eyeslam::trials {
+namespace eyeslam::messaging {
 
 namespace {
 
@@ -13,7 +12,7 @@ constexpr int kQueueCapacity = 10'000;  // far more than a link has between two 
 
 }  // namespace
 
-EventTap::EventTap(messaging::Link& link, Each each)
+EventTap::EventTap(Link& link, Each each)
     : link_(link), each_(std::move(each)), subscription_(link.lcm().subscribe(".*", &EventTap::onMessage, this))
 {
   subscription_->setQueueCapacity(kQueueCapacity);
@@ -36,4 +35,4 @@ void EventTap::onMessage(const lcm::ReceiveBuffer* buffer, const std::string& ch
   }
 }
 
-}  // namespace eyeslam::trials
+}  // namespace eyeslam::messaging
