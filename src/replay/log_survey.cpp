@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "eyeslam/messaging/decoding.h"
+#include "eyeslam/messaging/record_messages.h"
 
 namespace eyeslam::replay {
 

@@ -9,6 +9,8 @@
 #include <type_traits>
 
 #include "eyeslam/messaging/decoding.h"
+#include "eyeslam/messaging/record_messages.h"
+#include "eyeslam/messaging/retina_messages.h"
 #include "eyeslam/replay/device_fields.h"
 #include "eyeslam/replay/record_fields.h"
 #include "eyeslam/replay/servo_fields.h"

@@ -8,6 +8,7 @@
 
 #include "eyeslam/files/file_error.h"
 #include "eyeslam/messaging/decoding.h"
+#include "eyeslam/messaging/record_messages.h"
 
 namespace eyeslam::replay {
 namespace {
