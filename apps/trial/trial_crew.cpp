@@ -82,7 +82,7 @@ void TrialCrew::watch()
     if (interruption_.requested()) stopped_ = true;
     double done = 0.0;
     for (const std::atomic<double>& of_trial : done_s_) done += of_trial;
-    progress.show(static_cast<std::int64_t>(done));
+    if (done >= 1.0) progress.show(static_cast<std::int64_t>(done));
   }
 }
 

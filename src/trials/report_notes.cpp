@@ -66,8 +66,8 @@ std::string operatorNote(const TrialRecord& record)
                                        {"hardware.hand.surgeon.reaction_ms", "reaction", "ms"},
                                        {"hardware.hand.surgeon.dead_zone_um", "dead zone", "\u00b5m"},
                                        {"hardware.hand.surgeon.lag_ms", "lag", "ms"},
-                                       {"hardware.hand.tremor.tremor_low_um", "tremor from", "\u00b5m"},
-                                       {"hardware.hand.tremor.tremor_high_um", "to", "\u00b5m RMS an axis"}});
+                                       {"hardware.hand.tremor.tremor_low_um", "tremor at least", "\u00b5m"},
+                                       {"hardware.hand.tremor.tremor_high_um", "at most", "\u00b5m RMS an axis"}});
   if (record.score.aid != "manual")
     return "The hand that holds the instrument, with every aid and without, is a model: " + hand + ".";
   const std::string fires =

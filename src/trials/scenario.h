@@ -31,8 +31,8 @@ struct ScenarioFaultOptions {
     visitor.choice(
         "kind", self.kind,
         {"none", "blackout", "tool_over_everything", "operator_lost", "states_stop", "tip_not_finite", "restart",
-         "clock_step", "power_off", "laser_silent", "interlock_open", "camera_stops", "camera_freezes"},
-        "what goes wrong; source: issues 16 and 17");
+         "clock_step", "power_off", "laser_silent", "interlock_open", "camera_stops", "camera_freezes", "motion"},
+        "what goes wrong; motion: nothing but how the eye moves; source: issues 16 and 17");
     visitor.field("at_s", self.at_s, Range{0, 3600}, "s", "after what counts began; source: our choice");
     visitor.field("for_s", self.for_s, Range{0, 3600}, "s", "how long; source: our choice");
     visitor.choice("must", self.must, {"go_on", "hold", "fault"},

@@ -158,6 +158,7 @@ void Trial::breakThings()
 void Trial::setFault(bool broken)
 {
   const std::string& kind = setting_.scenario.fault.kind;
+  if (kind == "motion") return;  // the eye does it by itself
   if (kind == "operator_lost") return operator_->setLinked(!broken);
   if (kind == "blackout") return vision_->setObstruction(broken ? Obstruction::dark : Obstruction::none);
   if (kind == "tool_over_everything") return vision_->setObstruction(broken ? Obstruction::covered : Obstruction::none);
