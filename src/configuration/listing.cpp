@@ -43,12 +43,20 @@ std::string groupHeads(const std::vector<std::string>& path, const std::vector<s
   return heads;
 }
 
+// Within YAML's double quotes, where a bare end of line would become a space.
+std::string escaped(char c)
+{
+  if (c == '\n') return "\\n";
+  if (c == '\r') return "\\r";
+  return c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+}
+
 std::string quoted(const Field& field)
 {
   const bool is_text = std::holds_alternative<std::string*>(field.value) && field.choices.empty();
   if (!is_text) return textOf(field);
   std::string text = "\"";
-  for (const char c : textOf(field)) text += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+  for (const char c : textOf(field)) text += escaped(c);
   return text + '"';
 }
 

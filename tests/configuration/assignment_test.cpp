@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <string>
 
 #include "configuration/test_options.h"
 #include "support/temporary_folder.h"
@@ -60,6 +61,36 @@ TEST_F(Yaml, ChangesNothingWhenEmptyOrAllComments)
 {
   EXPECT_EQ(read("").lens.turns, 3);
   EXPECT_EQ(read("# nothing yet\n").lens.turns, 3);
+}
+
+// All that is said of a text: keys, values and lines, or what is wrong with it.
+template <class Read>
+std::string said(const Read& read)
+{
+  std::string text;
+  try {
+    for (const Assignment& assignment : read()) {
+      text += assignment.key + "=" + assignment.text + " (" + assignment.origin + ")\n";
+    }
+  } catch (const ConfigurationError& error) {
+    text = error.what();
+  }
+  return text;
+}
+
+TEST_F(Yaml, IsTheSameFromATextAsFromAFile)
+{
+  const std::string path = folder_.path("camera.yaml");
+  for (const YamlLists lists : {YamlLists::refused, YamlLists::joined}) {
+    for (const char* text : {"", "# nothing\n", "gain: 3", "lens:\n  turns: 7\n  coated: false\nkind: grey\n",
+                             "kind: [grey, colour]\n", "kind: [[[1, 2], [3]], [[4]]]", "gain: 1\ngain: 2\n", "gain: {",
+                             "a: 1\n---\nb: 2\n", "- 1\n- 2\n", "x: \"a \\\"b\\\" \\\\ c\"\n", "gain:\n"}) {
+      std::ofstream(path) << text;
+      EXPECT_EQ(said([&] { return parseYaml(path, text, lists); }), said([&] { return readYaml(path, lists); }))
+          << text;
+    }
+  }
+  EXPECT_EQ(said([] { return parseYaml("MARK", "lens:\n  turns: 7"); }), "lens.turns=7 (MARK:2)\n");
 }
 
 TEST_F(Yaml, RefusesAnUnknownKeyAndNamesTheNearest)

@@ -53,7 +53,7 @@ RC_GTEST_PROP(Listing, YamlWithoutCommentsReadsBackToTheSameValues, (double gain
   NoteOptions options;
   options.camera.gain = gain;
   options.camera.lens.turns = std::abs(turns % 11);
-  options.note = *rc::gen::container<std::string>(rc::gen::elementOf(std::string("ab \"'\\:#,[]{}&*!|>%@`-?=.")));
+  options.note = *rc::gen::container<std::string>(rc::gen::elementOf(std::string("ab \n\r\t\"'\\:#,[]{}&*!|>%@`-?=.")));
   const std::string yaml = yamlOf(options, YamlComments::left_out);
   RC_ASSERT(canonicalOf(applied(NoteOptions{}, parseYaml("text", yaml))) == canonicalOf(options));
   // No comment but what stands within a text.
