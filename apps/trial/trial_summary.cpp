@@ -24,16 +24,13 @@ std::size_t widthOf(const std::string& text)
       std::count_if(text.begin(), text.end(), [](char letter) { return (letter & 0xC0) != 0x80; }));
 }
 
-// Words stand to the left, as the first column does, numbers to the right.
-bool isInWords(const std::string& name) { return name == "measure" || name == "verdict"; }
-
-std::string lineOf(const std::vector<std::string>& names, const std::vector<std::string>& cells,
-                   const std::vector<std::size_t>& widths)
+// Words stand to the left, numbers to the right.
+std::string lineOf(const std::vector<std::string>& cells, const std::vector<std::size_t>& widths, std::size_t words)
 {
   std::string line;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::string space(widths[i] - widthOf(cells[i]), ' ');
-    line += "  " + (i == 0 || isInWords(names[i]) ? cells[i] + space : space + cells[i]);
+    line += "  " + (i < words ? cells[i] + space : space + cells[i]);
   }
   line.erase(line.find_last_not_of(' ') + 1);
   return line + "\n";
@@ -48,8 +45,8 @@ std::string textOf(const ReportTable& table)
   };
   widen(table.names);
   for (const std::vector<std::string>& row : table.rows) widen(row);
-  std::string text = lineOf(table.names, table.names, widths);
-  for (const std::vector<std::string>& row : table.rows) text += lineOf(table.names, row, widths);
+  std::string text = lineOf(table.names, widths, table.words);
+  for (const std::vector<std::string>& row : table.rows) text += lineOf(row, widths, table.words);
   return text;
 }
 
