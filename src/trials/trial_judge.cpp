@@ -65,11 +65,18 @@ void TrialJudge::take(const mark_t& mark)
     if (!scene_) scene_ = std::make_shared<TrialScene>(*setting_, name->seed);
     tip_judge_.emplace(-1.0);
   }
-  if (mark.kind == mark_t::NOTE && mark.note == kCountsFromHere) counts_from_ = mark.utime;
+  if (mark.kind == mark_t::NOTE && mark.note == kCountsFromHere && counts_from_ == 0) countFrom(mark.utime);
   if (mark.kind != mark_t::STOP || mark.sender != start_.sender) return;
   over_ = true;
   stopped_ = mark.utime;
   never_began_ = mark.note == kNeverBegan;
+}
+
+// What happened before was told from the start.
+void TrialJudge::countFrom(std::int64_t utime)
+{
+  counts_from_ = utime;
+  for (TrialEvent& event : events_) event.t_s += time(start_.utime);
 }
 
 void TrialJudge::take(const truth_t& truth)

@@ -64,6 +64,7 @@ class TrialJudge {
   };
 
   void take(const mark_t& mark);
+  void countFrom(std::int64_t utime);
   void take(const truth_t& truth);
   void take(const retina_pose_t& pose, std::int64_t utime);
   void take(const servo_status_t& status);
