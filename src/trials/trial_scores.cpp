@@ -172,7 +172,8 @@ void TrialJudge::addPulses(TrialRecord& record) const
     *score.far_unexplained += pulse.far && !pulse.explained ? 1 : 0;
     score.min_vessel_clearance_um = std::min(*score.min_vessel_clearance_um, pulse.clearance / kMicro);
   }
-  score.burns_per_s = static_cast<double>(pulses_.size()) / std::max(1e-3, record.pulses.back().t_s);
+  const double took_s = record.pulses.back().t_s - record.pulses.front().t_s;
+  if (took_s > 0.0) score.burns_per_s = static_cast<double>(pulses_.size() - 1) / took_s;
   score.more.emplace_back("waited_for_first_burn_s", record.pulses.front().t_s);
 }
 
