@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """results.py [PART...]: measures on the sequences of ../shared/sequences and writes docs/results.md.
 
-The parts: tracking, paper_method, methods, detectors, guidance, plans, loop, rendered_loop, processes; without any, all. What is not measured again is
+The parts: tracking, paper_method, methods, detectors, guidance, plans, loop, rendered_loop, processes, trials; without any, all. What is not measured again is
 taken from out/results/PART.md. Errors and maps are judged by ../shared/score.py; the command of each figure stands beside it.
 Needs a release build.
 """
@@ -17,6 +17,8 @@ import subprocess
 import sys
 
 import numpy as np
+
+import trial_tables
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / "shared"
@@ -265,8 +267,12 @@ def processes(names):
     yield bench("live", "--seconds", "600")
 
 
+def trials(names):
+    yield from trial_tables.trials()
+
+
 PARTS = {part.__name__: part
-         for part in (tracking, paper_method, methods, detectors, guidance, plans, loop, rendered_loop, processes)}
+         for part in (tracking, paper_method, methods, detectors, guidance, plans, loop, rendered_loop, processes, trials)}
 
 
 def head():
