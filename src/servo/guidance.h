@@ -19,7 +19,7 @@ inline fixtures::CurveFixtureOptions keptVessel()
 {
   fixtures::CurveFixtureOptions options;
   options.keeps_to = "vessel";
-  options.margin_um = 400.0;
+  options.margin_um = 500.0;
   return options;
 }
 

@@ -118,7 +118,7 @@ ChosenVessel vesselToTrace(const fixtures::VesselNetwork& network, const VesselW
   std::stable_sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.length > b.length; });
   ChosenVessel best;
   double best_worth = 0.0;
-  const auto beyond = static_cast<std::ptrdiff_t>(wish.beyond_px);
+  const auto beyond = static_cast<std::ptrdiff_t>(wish.beyond_px), farthest = 4 * beyond;
   for (const Run& run : runs) {
     if (run.length <= best_worth) break;
     const auto begin = ways[run.way].begin() + static_cast<std::ptrdiff_t>(run.first);
@@ -127,7 +127,10 @@ ChosenVessel vesselToTrace(const fixtures::VesselNetwork& network, const VesselW
         run.length * (1.0 - kCrowded * crowding({begin - beyond, end + beyond}, network, wish.apart_px));
     if (worth <= best_worth) continue;
     best_worth = worth;
-    best = {{begin - beyond, end + beyond}, static_cast<std::size_t>(beyond), run.count};
+    const auto before = std::min(farthest, begin - ways[run.way].begin());
+    best = {{begin - before, end + std::min(farthest, ways[run.way].end() - end)},
+            static_cast<std::size_t>(before),
+            run.count};
   }
   return best;
 }

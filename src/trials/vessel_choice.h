@@ -22,7 +22,7 @@ struct VesselWish {
 
 /// A stretch of a vessel.
 struct ChosenVessel {
-  std::vector<Eigen::Vector2d> centreline;  ///< what is to be traced and what lies beyond both ends of that
+  std::vector<Eigen::Vector2d> centreline;  ///< what is to be traced, and of what lies beyond both ends as much as a hand may lean
   std::size_t first = 0, count = 0;         ///< of it, what is to be traced; count 0: nothing is wide enough
 };
 
