@@ -70,12 +70,18 @@ std::vector<Assignment> combination(const std::vector<Choice>& choices, std::siz
   return assignments;
 }
 
+// Of a photograph its name alone; a number has no extension.
+std::string wordFor(const Assignment& assignment)
+{
+  return assignment.key == "retina" ? std::filesystem::path(assignment.text).stem().string() : assignment.text;
+}
+
 std::string nameOf(const std::vector<Choice>& choices, const std::vector<Assignment>& assignments)
 {
   std::string name;
   for (std::size_t i = 0; i < choices.size(); ++i) {
     if (choices[i].words.size() < 2) continue;
-    const std::string word = std::filesystem::path(assignments[i].text).stem().string();
+    const std::string word = wordFor(assignments[i]);
     name += fmt::format("{}{}={}", name.empty() ? "" : ",", choices[i].key, word);
   }
   return name;

@@ -221,6 +221,33 @@ TEST(OperatorMessage, AZoneHasThreeCornersAndAPlanWithoutApprovalNoHash)
   EXPECT_EQ(write(wish, message), Reason::out_of_range);
 }
 
+TEST(OperatorMessage, AVesselIsNamedByItsIdOrByAPointNotByBoth)
+{
+  OperatorWish wish;
+  operator_t message{};
+  wish.fixture.kind = FixtureKind::vessel;
+  wish.fixture.point_px = {10.0, 20.0};
+  EXPECT_EQ(write(wish, message), Reason::none);
+  OperatorWish heard;
+  EXPECT_EQ(read(message, heard), Reason::none);
+  EXPECT_EQ(heard.fixture.point_px, wish.fixture.point_px);
+  EXPECT_EQ(heard.fixture.vessel, -1);
+  wish.fixture.vessel = 4;
+  EXPECT_EQ(write(wish, message), Reason::out_of_range);
+  message.vessel = 4;
+  EXPECT_EQ(read(message, heard), Reason::out_of_range) << "whoever sent it";
+  wish.fixture.point_px.setZero();
+  EXPECT_EQ(write(wish, message), Reason::none);
+  for (const FixtureKind kind : {FixtureKind::none, FixtureKind::filter, FixtureKind::scaling, FixtureKind::standoff,
+                                 FixtureKind::calibration}) {
+    wish.fixture = {};
+    wish.fixture.kind = kind;
+    EXPECT_EQ(write(wish, message), Reason::none);
+    wish.fixture.point_px.y() = 1.0;
+    EXPECT_EQ(write(wish, message), Reason::out_of_range) << "neither of a point nor of a vessel";
+  }
+}
+
 TEST(ToolTipMessage, HasNoPlaceForWhatIsNotSeen)
 {
   InstrumentSight sight;

@@ -27,6 +27,12 @@ mark_t note(const std::string& text)
   return mark;
 }
 
+void sendNote(Publisher<mark_t>& marks, const std::string& text, std::int64_t utime = kStart)
+{
+  mark_t mark = note(text);
+  marks.publish(mark, utime);
+}
+
 truth_t truthAt(double x)
 {
   truth_t truth{};
@@ -64,15 +70,14 @@ TEST(EventTap, HearsAllChannelsInTheOrderOfSendingWithTheTimeThatItWasTold)
   Publisher<mark_t> marks(link);
   Publisher<truth_t> truths(link);
   const Subscription<truth_t> answers(link, [&](const truth_t& truth, const MessageHeader&) {
-    if (truth.tip[0] == 1.0) marks.publish(note("answer"), kStart);
+    if (truth.tip[0] == 1.0) sendNote(marks, "answer");
   });
   tap.setTime(kStart);
-  marks.publish(note("first"), kStart);
-  truths.publish(truthAt(1.0), kStart);
-  truths.publish(truthAt(2.0), kStart);
+  sendNote(marks, "first");
+  for (truth_t truth : {truthAt(1.0), truthAt(2.0)}) truths.publish(truth, kStart);
   link.drain({kStart, kStart});
   tap.setTime(kStart + 1000);
-  marks.publish(note("last"), kStart + 1000);
+  sendNote(marks, "last", kStart + 1000);
   link.drain({kStart + 1000, kStart + 1000});
   const std::vector<Heard> expected{{0, kStart, "MARK", "first"},
                                     {1, kStart, "TRUTH", "1.000000"},
@@ -90,7 +95,7 @@ TEST(EventTap, ThrowsWhatItsListenerThrewOnceAtTheNextTime)
     if (++heard <= 2) throw std::runtime_error("disk full " + std::to_string(heard));
   });
   Publisher<mark_t> marks(link);
-  for (int i = 0; i < 3; ++i) marks.publish(note("x"), kStart);
+  for (int i = 0; i < 3; ++i) sendNote(marks, "x");
   EXPECT_NO_THROW(link.drain({kStart, kStart}));
   EXPECT_EQ(heard, 3);
   try {
@@ -109,10 +114,10 @@ TEST(EventTap, HearsNothingMoreWhenItIsGone)
   Publisher<mark_t> marks(link);
   {
     EventTap tap(link, [&heard](const TappedEvent&) { ++heard; });
-    marks.publish(note("x"), kStart);
+    sendNote(marks, "x");
     link.drain({kStart, kStart});
   }
-  marks.publish(note("x"), kStart);
+  sendNote(marks, "x");
   link.drain({kStart, kStart});
   EXPECT_EQ(heard, 1);
 }

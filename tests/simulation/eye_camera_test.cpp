@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 #include "eyeslam/simulation/procedural_fundus.h"
@@ -261,6 +262,78 @@ TEST(EyeCamera, AFastRetinaIsBlurredAlongItsWay)
   EXPECT_LT(widened, 1.1 * way / std::sqrt(12.0));
   EXPECT_GT(widened, 0.6 * way / std::sqrt(12.0));  // its faint ends do not count as a change
   EXPECT_NEAR(fast.y, still.y, 0.3);
+}
+
+// A retina that is black but for a white square of 0.2 mm and a vessel as wide beside it.
+Fundus markedFundus(const cv::Point2d& mark_mm)
+{
+  Fundus fundus;
+  fundus.um_per_px = 5.0;
+  fundus.bgr.create(1880, 2800);
+  fundus.bgr.setTo(cv::Vec3f(0.05F, 0.05F, 0.05F));
+  fundus.calibre_px.create(fundus.bgr.size());
+  fundus.calibre_px.setTo(0.0F);
+  fundus.known.create(fundus.bgr.size());
+  fundus.known.setTo(255);
+  const cv::Rect square(cvRound(200.0 * mark_mm.x) - 20, cvRound(200.0 * mark_mm.y) - 20, 41, 41);
+  fundus.bgr(square).setTo(cv::Vec3f(0.9F, 0.9F, 0.9F));
+  fundus.calibre_px(square).setTo(8.0F);
+  return fundus;
+}
+
+cv::Point2d middleOf(const cv::Mat& mask)
+{
+  const cv::Moments moments = cv::moments(mask, true);
+  return {moments.m10 / moments.m00, moments.m01 / moments.m00};
+}
+
+TEST(EyeCamera, BeginsWhereItIsToldTo)
+{
+  for (const cv::Point2d& place_mm : {cv::Point2d(5.0, 4.0), cv::Point2d(8.5, 5.5)}) {
+    EyeCameraOptions options = small();
+    options.drift_um = 0.0;
+    options.view_x_mm = place_mm.x;
+    options.view_y_mm = place_mm.y;
+    const EyeCamera camera(options, markedFundus(place_mm), kSeed);
+    // On the vessels, in map px, whose frame 0 is the picture at the start.
+    const cv::Point2d at = middleOf(camera.vessels() > 0.0F) + camera.vesselsOrigin();
+    EXPECT_NEAR(at.x, imageCentre(options).x, 1.0);
+    EXPECT_NEAR(at.y, imageCentre(options).y, 1.0);
+  }
+}
+
+TEST(EyeCamera, ShowsInItsPictureThePlaceThatItBeginsAt)
+{
+  EyeCameraOptions options = small();
+  options.drift_um = 0.0;
+  options.view_x_mm = 6.0;
+  options.view_y_mm = 4.5;
+  EyeCamera camera(options, markedFundus({6.0, 4.5}), kSeed);
+  Scene scene(options);
+  scene.speed.setZero();
+  const RenderedFrame frame = camera.render(scene.frame(0));
+  // The tool's dark shaft is beside it: the square is far brighter than all else but blooms.
+  const double um = umPerPx(options, kSeed);
+  const int half = static_cast<int>(60.0 / um);
+  const cv::Point2d centre = imageCentre(options);
+  const cv::Rect inside(cvRound(centre.x) - half, cvRound(centre.y) - half, 2 * half, 2 * half);
+  const int far = static_cast<int>(300.0 / um);
+  const cv::Rect below(cvRound(centre.x) - half, cvRound(centre.y) + far, 2 * half, 2 * half);
+  EXPECT_GT(cv::mean(frame.image(inside))[1], 2.0 * cv::mean(frame.image(below))[1]);
+}
+
+TEST(EyeCamera, PaintsTheRetinaInTheSamePlaceAsItsVessels)
+{
+  EyeCameraOptions options = small();
+  options.view_x_mm = 6.0;
+  options.view_y_mm = 4.5;
+  const EyeCamera camera(options, markedFundus({6.3, 4.2}), kSeed);
+  ASSERT_EQ(camera.retina().size(), camera.vessels().size());
+  ASSERT_EQ(camera.retina().type(), CV_8UC3);
+  cv::Mat green;
+  cv::extractChannel(camera.retina(), green, 1);
+  const cv::Point2d seen = middleOf(green > 128), vessel = middleOf(camera.vessels() > 0.0F);
+  EXPECT_LT(std::hypot(seen.x - vessel.x, seen.y - vessel.y), 1.5);  // calibres are those of the nearest px
 }
 
 TEST(EyeCamera, RefusesAFundusThatIsTooSmallForTheViewAndItsReach)

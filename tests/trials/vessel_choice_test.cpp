@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eyeslam/trials/vessel_choice.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "support/random_vessels.h"
+
+namespace eyeslam::trials {
+namespace {
+
+using Eigen::Vector2d;
+using fixtures::Vessel;
+
+/// A vessel that is as wide as it is wished for.
+Vessel wide(int id, const std::vector<Vector2d>& corners, std::array<int, 2> ends = {-1, -1}, double radius_px = 6.0)
+{
+  return support::vesselThrough(id, corners, ends, radius_px);
+}
+
+fixtures::VesselNetwork networkOf(std::vector<Vessel> vessels)
+{
+  fixtures::VesselNetwork network;
+  network.vessels = std::move(vessels);
+  return network;
+}
+
+constexpr double kBeyond = 60.0;
+
+VesselWish wish()
+{
+  VesselWish wish;
+  wish.area_px = Eigen::AlignedBox2d(Vector2d(0.0, 0.0), Vector2d(2000.0, 2000.0));
+  wish.longest_px = 1e4;
+  wish.radius_px = 5.0;
+  wish.apart_px = 40.0;
+  wish.beyond_px = kBeyond;
+  return wish;
+}
+
+std::vector<Vector2d> traced(const ChosenVessel& chosen)
+{
+  const auto first = chosen.centreline.begin() + static_cast<std::ptrdiff_t>(chosen.first);
+  return {first, first + static_cast<std::ptrdiff_t>(chosen.count)};
+}
+
+double lengthOf(const std::vector<Vector2d>& way)
+{
+  double length = 0.0;
+  for (std::size_t i = 1; i < way.size(); ++i) length += (way[i] - way[i - 1]).norm();
+  return length;
+}
+
+TEST(VesselChoice, TakesTheLongestOfVesselsThatAreAlone)
+{
+  const ChosenVessel chosen =
+      vesselToTrace(networkOf({wide(1, {{100, 200}, {600, 200}}), wide(2, {{100, 500}, {900, 500}}),
+                               wide(3, {{100, 800}, {700, 800}})}),
+                    wish());
+  ASSERT_GT(chosen.count, 0U);
+  for (const Vector2d& place : chosen.centreline) EXPECT_NEAR(place.y(), 500.0, 1e-9);
+}
+
+TEST(VesselChoice, TakesAShorterVesselRatherThanOneThatRunsBesideAnother)
+{
+  // 800 px with a neighbour 30 px beside it all the way, against 500 px alone.
+  const std::vector<Vessel> vessels{wide(1, {{100, 200}, {900, 200}}), wide(2, {{100, 230}, {900, 230}}),
+                                    wide(3, {{100, 800}, {600, 800}})};
+  const ChosenVessel chosen = vesselToTrace(networkOf(vessels), wish());
+  ASSERT_GT(chosen.count, 0U);
+  EXPECT_NEAR(chosen.centreline.front().y(), 800.0, 1e-9);
+  VesselWish careless = wish();
+  careless.apart_px = 20.0;
+  EXPECT_NEAR(vesselToTrace(networkOf(vessels), careless).centreline.front().y(), 200.0, 20.0 + kBeyond);
+}
+
+// A capillary that nobody would trace is a neighbour all the same.
+TEST(VesselChoice, CountsNeighboursThatAreTooThinToTrace)
+{
+  const ChosenVessel chosen =
+      vesselToTrace(networkOf({wide(1, {{100, 200}, {900, 200}}), wide(2, {{100, 230}, {900, 230}}, {-1, -1}, 2.0),
+                               wide(3, {{100, 800}, {600, 800}})}),
+                    wish());
+  ASSERT_GT(chosen.count, 0U);
+  EXPECT_NEAR(chosen.centreline.front().y(), 800.0, 1e-9);
+}
+
+TEST(VesselChoice, CutsTheWayWhereItTurnsSharply)
+{
+  const ChosenVessel chosen = vesselToTrace(networkOf({wide(1, {{100, 200}, {500, 200}, {500, 1100}})}), wish());
+  const std::vector<Vector2d> way = traced(chosen);
+  ASSERT_GT(way.size(), 700U) << "the longer limb";
+  for (const Vector2d& place : way) EXPECT_NEAR(place.x(), 500.0, 1e-9) << place.transpose();
+  // A bend of 20 degrees is none.
+  const Vector2d corner(500, 200), end = corner + 900.0 * Vector2d(std::cos(0.35), std::sin(0.35));
+  EXPECT_GT(lengthOf(traced(vesselToTrace(networkOf({wide(1, {{100, 200}, corner, end})}), wish()))), 1100.0);
+}
+
+TEST(VesselChoice, KeepsWhatIsWishedOfTheVesselBeyondBothEnds)
+{
+  for (const double longest : {1e4, 300.0}) {
+    VesselWish limited = wish();
+    limited.longest_px = longest;
+    const ChosenVessel chosen = vesselToTrace(networkOf({wide(1, {{100, 200}, {900, 200}})}), limited);
+    ASSERT_GT(chosen.count, 1U);
+    const std::size_t after = chosen.centreline.size() - chosen.first - chosen.count;
+    for (const std::size_t beyond : {chosen.first, after}) {
+      EXPECT_GE(beyond, static_cast<std::size_t>(kBeyond));
+      EXPECT_LE(beyond, static_cast<std::size_t>(4 * kBeyond));
+    }
+    EXPECT_NEAR(lengthOf(traced(chosen)), std::min(longest, 800.0 - 2 * kBeyond), 2.0);
+  }
+  EXPECT_EQ(vesselToTrace(networkOf({wide(1, {{100, 200}, {100 + 2 * kBeyond, 200}})}), wish()).count, 0U)
+      << "too short to go on beyond both ends";
+}
+
+TEST(VesselChoice, GoesStraightOnThroughAJunction)
+{
+  const Vector2d junction(500, 500);
+  const ChosenVessel chosen =
+      vesselToTrace(networkOf({wide(1, {{100, 500}, junction}, {-1, 7}), wide(2, {junction, {900, 500}}, {7, -1}),
+                               wide(3, {junction, {650, 950}}, {7, -1})}),
+                    wish());
+  EXPECT_NEAR(lengthOf(traced(chosen)), 800.0 - 2 * kBeyond, 2.0);
+  for (const Vector2d& place : chosen.centreline) EXPECT_NEAR(place.y(), 500.0, 1e-9);
+}
+
+TEST(VesselChoice, StaysWithinItsArea)
+{
+  VesselWish small = wish();
+  small.area_px = Eigen::AlignedBox2d(Vector2d(300.0, 100.0), Vector2d(450.0, 300.0));
+  const std::vector<Vector2d> way = traced(vesselToTrace(networkOf({wide(1, {{100, 200}, {900, 200}})}), small));
+  ASSERT_GT(way.size(), 100U);
+  for (const Vector2d& place : way) EXPECT_TRUE(small.area_px.contains(place));
+}
+
+TEST(VesselChoice, FindsNothingWhereNothingIsWideEnough)
+{
+  EXPECT_EQ(vesselToTrace(networkOf({wide(1, {{100, 200}, {900, 200}}, {-1, -1}, 4.0)}), wish()).count, 0U);
+  EXPECT_EQ(vesselToTrace({}, wish()).count, 0U);
+}
+
+}  // namespace
+}  // namespace eyeslam::trials
