@@ -158,6 +158,73 @@ TEST_F(Guided, AVesselThatIsNotThereIsRefusedByName)
   EXPECT_EQ(reason, Reason::vessel_unknown);
 }
 
+OperatorWish vesselNear(double x_px, double y_px)
+{
+  OperatorWish wish = wishFor(FixtureKind::vessel);
+  wish.fixture.point_px = {x_px, y_px};
+  return wish;
+}
+
+/// Vessel 3 along x at y = 100 px, vessel 5 at y = 160 px.
+std::shared_ptr<Preparation> twoVessels()
+{
+  const auto along = [](int id, double y) {
+    fixtures::Vessel vessel;
+    vessel.id = id;
+    for (int x = 0; x <= 1000; x += 10)
+      vessel.points.push_back(
+          {{static_cast<double>(x), y}, Eigen::Vector2d::UnitX(), 10.0, static_cast<double>(x), 0.0});
+    return vessel;
+  };
+  auto made = preparation();
+  made->vessels = std::make_shared<const fixtures::CenterlineIndex>(
+      std::vector<fixtures::Vessel>{along(3, 100.0), along(5, 160.0)}, kUmPerPx);
+  return made;
+}
+
+TEST_F(Guided, AVesselWithoutIdIsTheOneNearestToThePointWhereverTheHandIs)
+{
+  const auto prepared = twoVessels();
+  guidance.adopt(prepared.get());
+  EXPECT_NEAR(pxOf(after(vesselNear(800.0, 140.0), {400.0, 110.0})).y(), 160.0, 0.1);
+  EXPECT_EQ(reason, Reason::none);
+  EXPECT_NEAR(pxOf(after(vesselNear(100.0, 120.0), {400.0, 150.0})).y(), 100.0, 0.1) << "pointed at anew";
+  EXPECT_EQ(reason, Reason::none);
+}
+
+TEST_F(Guided, APlaceWithoutAVesselNearIsRefusedByName)
+{
+  after(vesselNear(400.0, 100.0), {400.0, 140.0}, 1);
+  EXPECT_EQ(reason, Reason::no_vessel);
+  const auto prepared = twoVessels();
+  guidance.adopt(prepared.get());
+  after(vesselNear(400.0, 265.0), {400.0, 140.0}, 1);  // 525 um; 500 are near
+  EXPECT_EQ(reason, Reason::vessel_unknown);
+  after(vesselNear(400.0, 255.0), {400.0, 140.0}, 1);
+  EXPECT_EQ(reason, Reason::none);
+}
+
+TEST_F(Guided, AVesselThatWasPointedAtMayChangeItsIdInANewerMap)
+{
+  const auto prepared = preparation();
+  guidance.adopt(prepared.get());
+  after(vesselNear(400.0, 100.0), {400.0, 140.0});
+  const auto newer = preparation(9);
+  guidance.adopt(newer.get());
+  EXPECT_NEAR(pxOf(after(vesselNear(400.0, 100.0), {450.0, 140.0})).y(), 100.0, 0.1);
+  EXPECT_EQ(reason, Reason::none);
+}
+
+// 300 um: as far as no hand leans, but nearer to the neighbour.
+TEST_F(Guided, AHandThatLeansOverTheNeighbourStaysWithItsVessel)
+{
+  EXPECT_EQ(servo::GuidanceOptions{}.vessel.keeps_to, "vessel");
+  const auto prepared = twoVessels();
+  guidance.adopt(prepared.get());
+  after(vesselNear(400.0, 100.0), {400.0, 110.0});
+  EXPECT_NEAR(pxOf(after(vesselNear(400.0, 100.0), {400.0, 160.0})).y(), 100.0, 0.1);
+}
+
 TEST_F(Guided, AVesselThatIsFollowedMayChangeItsIdInANewerMap)
 {
   const auto prepared = preparation();

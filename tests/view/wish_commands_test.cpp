@@ -41,6 +41,28 @@ TEST(WishCommands, ChooseAFixtureOfTheMapThatVisionHas)
   EXPECT_EQ(after({"fixture scaling"}).fixture.kind, FixtureKind::scaling);
 }
 
+TEST(WishCommands, NameAVesselByAPlaceOfTheMap)
+{
+  const OperatorWish there = after({"lambda 0.1", "fixture vessel 9", "fixture vessel 400.5 -12"});
+  EXPECT_EQ(there.fixture.kind, FixtureKind::vessel);
+  EXPECT_EQ(there.fixture.vessel, -1);
+  EXPECT_EQ(there.fixture.point_px, Eigen::Vector2d(400.5, -12.0));
+  EXPECT_EQ(there.fixture.lambda, 0.1);
+  EXPECT_EQ(there.map_id, 7);
+  EXPECT_EQ(after({"fixture vessel here"}).fixture.point_px, *kSight.tip_px);
+  const OperatorWish by_id = after({"fixture vessel here", "fixture vessel 12"});
+  EXPECT_EQ(by_id.fixture.vessel, 12);
+  EXPECT_EQ(by_id.fixture.point_px, Eigen::Vector2d::Zero());
+  OperatorWish wish;
+  EXPECT_EQ(*obeyWish(CommandWords("fixture vessel 4 5"), kSight, wish), "fixture: vessel at 4.0 5.0 px of the map");
+  for (const char* line : {"fixture vessel", "fixture vessel -1", "fixture vessel 1.5", "fixture vessel 1 2 3",
+                           "fixture vessel here 2", "fixture vessel 1 here", "fixture vessel 1 2e9"}) {
+    EXPECT_THROW(obeyWish(CommandWords(line), kSight, wish), CommandError) << line;
+  }
+  EXPECT_THROW(obeyWish(CommandWords("fixture vessel here"), Sight{7, std::nullopt}, wish), CommandError);
+  EXPECT_THROW(obeyWish(CommandWords("fixture vessel 1 2"), Sight{}, wish), CommandError);
+}
+
 TEST(WishCommands, LeaveNothingOfTheFixtureBeforeButLambda)
 {
   const OperatorWish wish = after({"lambda 0.2", "fixture point 1 2", "fixture vessel 3", "fixture filter"});
@@ -115,10 +137,10 @@ INSTANTIATE_TEST_SUITE_P(Lines, Refusals,
                          testing::Values("ready now", "fixture", "fixture magic", "fixture point", "fixture point 1",
                                          "fixture point x 2", "fixture point 1 nan", "fixture point 1 1e9",
                                          "fixture point 1 2 3", "fixture point here 3", "fixture vessel",
-                                         "fixture vessel -1", "fixture vessel 1.5", "fixture vessel 1 x", "fixture vessel 1 2 3", "fixture standoff -1",
-                                         "fixture standoff 30000", "fixture filter 3", "lambda", "lambda 2",
-                                         "lambda -0.1", "lambda x", "zone", "zone 1 2 3 4", "zone 1 2 3 4 5",
-                                         "zone 1 2 3 4 5 x", "arm"));
+                                         "fixture vessel -1", "fixture vessel 1.5", "fixture vessel 1 x",
+                                         "fixture vessel 1 2 3", "fixture standoff -1", "fixture standoff 30000",
+                                         "fixture filter 3", "lambda", "lambda 2", "lambda -0.1", "lambda x", "zone",
+                                         "zone 1 2 3 4", "zone 1 2 3 4 5", "zone 1 2 3 4 5 x", "arm"));
 
 TEST(WishCommands, NeedAMapForPlacesOnIt)
 {
