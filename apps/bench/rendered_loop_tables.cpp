@@ -80,8 +80,8 @@ Held hold(const trials::TrialSetting& setting, std::uint64_t seed)
   std::vector<double> errors_m, poses_m;
   for (const trials::TipSample& sample : record.tip) errors_m.push_back(sample.error);
   for (const double px : record.pose_errors_px) poses_m.push_back(kFull * px * kMicro * scene->umPerPx());
-  Held held{inMicrometres(errors_m), inMicrometres(poses_m), record.jumps,  {}, record.fastest_tip,
-            record.worst_pivot,      record.frames,          record.tracked};
+  Held held{inMicrometres(errors_m), inMicrometres(poses_m), record.jumps,  {},
+            record.fastest_tip,      record.worst_pivot,     record.frames, record.tracked};
   for (const trials::TrialEvent& event : record.events)
     if (event.what == "hold" || event.what == "fault") held.stops.push_back(event.what + " " + event.reason);
   return held;
@@ -102,8 +102,9 @@ std::vector<Held> run(const HoldCase& c, const LoopInputs& inputs)
   std::vector<std::future<void>> workers;
   for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i)
     workers.push_back(std::async(std::launch::async, work));
-  Progress progress(fmt::format("rendered, {}, {}/{}, {}, aid {}", c.motion, c.camera_hz, c.latency_ms, c.null_at, c.aid),
-                    inputs.seeds, inputs.quiet ? Verbosity::quiet : Verbosity::normal);
+  Progress progress(
+      fmt::format("rendered, {}, {}/{}, {}, aid {}", c.motion, c.camera_hz, c.latency_ms, c.null_at, c.aid),
+      inputs.seeds, inputs.quiet ? Verbosity::quiet : Verbosity::normal);
   for (std::future<void>& worker : workers) {
     while (worker.wait_for(std::chrono::milliseconds(200)) != std::future_status::ready)
       progress.show(static_cast<std::int64_t>(done));
