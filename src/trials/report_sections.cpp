@@ -34,10 +34,10 @@ void addPictures(const std::vector<const TrialRecord*>& trials, const std::strin
     return;
   }
   const bool height = trials.front()->task == "standoff";
-  page.figure(
-      traceFigure(trials, name),
-      fmt::format("Way of the tip over the true retina, seed {}. The rectangle in the overview is the close-up.{}",
-                  seed, height ? " Seen from above: the error is that of the height, in the next figure." : ""));
+  page.figure(traceFigure(trials, name),
+              fmt::format("Way of the tip over the true retina, seed {}. {}", seed,
+                          height ? "Seen from above: the error is that of the height, in the next figure."
+                                 : "The rectangle in the overview is the close-up."));
   page.figure(
       errorOverTime(trials),
       fmt::format("Error of the tip over time, seed {}: from the least to the greatest of each column, and its RMS "

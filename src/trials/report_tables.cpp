@@ -77,6 +77,7 @@ std::vector<Column> columnsOfLoop()
 /// Three digits of the mean, and as many places of the spread.
 std::string withSpread(const OverSeeds& over, std::size_t count)
 {
+  if (count < 2 && over.mean == std::round(over.mean)) return fmt::format("{:.0f}", over.mean);  // counts, mostly
   const double magnitude = std::abs(over.mean);
   const int places = magnitude < 1e-9 ? 0 : std::clamp(2 - static_cast<int>(std::floor(std::log10(magnitude))), 0, 4);
   if (count < 2) return fmt::format("{:.{}f}", over.mean, places);
@@ -181,8 +182,8 @@ ReportTable loopTable(const StudyGroup& group) { return tableOf(group, columnsOf
 std::string reductionOf(const PairedComparison& figures)
 {
   const Estimate& estimate = figures.reduction_percent;
-  if (figures.pairs < 2) return fmt::format("{:.1f} %", estimate.value);
-  return fmt::format("{:.1f} % ({:.1f} to {:.1f})", estimate.value, estimate.low, estimate.high);
+  if (figures.pairs < 2) return fmt::format("{:.1f}\u00a0%", estimate.value);
+  return fmt::format("{:.1f}\u00a0% ({:.1f}\u00a0to\u00a0{:.1f})", estimate.value, estimate.low, estimate.high);
 }
 
 ReportTable verdictTable(const StudyGroup& group)

@@ -49,7 +49,7 @@ std::vector<Headline> headlinesOf(const StudyGroup& group, const std::vector<Aid
                        fmt::format("{}, {}; {} {:.0f} \u00b5m", first->measure.name, styleOf(strongest.aid).name,
                                    styleOf(group.unaided()->aid).name, first->figures.unaided.mean)});
   headlines.push_back({fmt::format("{}", seedsMadeWorse(comparisons, strongest.aid).size()),
-                       fmt::format("of {} seeds", first->figures.pairs),
+                       fmt::format("of {} seed{}", first->figures.pairs, first->figures.pairs == 1 ? "" : "s"),
                        "made worse by the aid, by 95th percentile or " + first->measure.name});
   return headlines;
 }
@@ -118,8 +118,8 @@ void addStatistics(const StudyGroup& group, const std::vector<AidComparison>& co
   std::vector<std::vector<const TrialRecord*>> shown{group.aids.front().trials};
   if (group.aids.size() > 1) shown.push_back(group.aids.back().trials);
   page.figure(placementFigure(shown),
-              "All burns as seen from their targets. Rings: 30, 60 (black), 120 \u00b5m; farther than 60 \u00b5m "
-              "counts as far.");
+              "All burns as seen from their targets. Black ring: 60 \u00b5m, and farther counts as far; grey: 30, 120, "
+              "240 \u00b5m.");
   page.table(touchTable(group), "Share of burns that touch a true vessel, by the calibre of the widest.");
 }
 

@@ -107,10 +107,11 @@ std::string titleOf(const TrialRecord& trial, char letter)
 std::string traceFigure(const std::vector<const TrialRecord*>& trials, const std::string& name)
 {
   const bool single = trials.size() == 1;
-  const auto columns = static_cast<double>(single ? 2 : trials.size());
+  const bool closer = trials.front()->task != "standoff";  // from above its error cannot be seen
+  const auto columns = static_cast<double>(single && closer ? 2 : trials.size());
   const double width = (kWidth - kGap * (columns - 1.0)) / columns;
   const double below = kPanelHeight_px + 24.0 + kGap + 14.0;
-  const double bottom = single ? kPanelHeight_px + 24.0 : below + kCloseUpHeight_px;
+  const double bottom = single || !closer ? kPanelHeight_px + 24.0 : below + kCloseUpHeight_px;
   SvgCanvas canvas(kWidth, bottom + 30.0, "way of the tip over the retina");
   const Box region = grownTo(regionOf(trials), width / kPanelHeight_px, kLeast);
   const double closer_height = single ? kPanelHeight_px : kCloseUpHeight_px;
@@ -123,9 +124,9 @@ std::string traceFigure(const std::vector<const TrialRecord*>& trials, const std
     const double x = static_cast<double>(i) * (width + kGap);
     const Box plot = boxAt(x, 24.0, width, kPanelHeight_px);
     drawPanel(*trials[i], background, plot, region, titleOf(*trials[i], letter++), canvas);
-    drawPlaceOfCloseUp(plot, region, close_up, canvas);
+    if (closer) drawPlaceOfCloseUp(plot, region, close_up, canvas);
   }
-  for (std::size_t i = 0; i < trials.size(); ++i) {
+  for (std::size_t i = 0; closer && i < trials.size(); ++i) {
     const double x = static_cast<double>(single ? 1 : i) * (width + kGap);
     const Box plot = boxAt(x, single ? 24.0 : below, width, closer_height);
     drawPanel(*trials[i], background, plot, close_up, fmt::format("{}\u00a0 close-up", letter++), canvas);

@@ -36,9 +36,10 @@ std::string trialReport(const TrialRecord& record)
   addPictures({&record}, "retina", page);
   if (record.task == "laser") {
     page.table(targetTable(record), "What became of the targets.");
-    page.figure(placementFigure({{&record}}),
-                "Each burn as seen from its target. Rings: 30, 60 (black), 120 \u00b5m; farther than 60 \u00b5m counts "
-                "as far.");
+    page.figure(
+        placementFigure({{&record}}),
+        "Each burn as seen from its target. Black ring: 60 \u00b5m, and farther counts as far; grey: 30, 120, 240 "
+        "\u00b5m.");
   }
   page.figure(errorDistribution({{record.score.aid, {&record}}}), "Distribution of the errors.");
   page.section("Timing");
