@@ -19,7 +19,6 @@ inline fixtures::CurveFixtureOptions keptVessel()
 {
   fixtures::CurveFixtureOptions options;
   options.keeps_to = "vessel";
-  options.margin_um = 500.0;
   return options;
 }
 
