@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whole trials in lock step, seconds each: the real tracker on small rendered frames, nothing but messages between all.
+#include "eyeslam/trials/trial.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "eyeslam/configuration/listing.h"
+#include "eyeslam/messaging/decoding.h"
+#include "eyeslam/messaging/record_messages.h"
+#include "eyeslam/trials/error_figures.h"
+#include "eyeslam/trials/lock_step_time.h"
+#include "eyeslam/trials/trial_marks.h"
+#include "support/short_trial.h"
+
+namespace eyeslam::trials {
+namespace {
+
+using support::KeptEvent;
+using support::ShortTrial;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+const ShortTrial& traced()
+{
+  static const ShortTrial trial = [] {
+    ShortTrial hard("task: trace\naid: hard\n");
+    hard.run();
+    return hard;
+  }();
+  return trial;
+}
+
+template <class Message>
+std::vector<Message> messagesOf(const ShortTrial& trial, const std::string& channel)
+{
+  std::vector<Message> messages;
+  for (const KeptEvent& kept : trial.events) {
+    if (kept.channel != channel) continue;
+    messages.emplace_back();
+    const files::LogEvent event = kept.event();
+    EXPECT_TRUE(messaging::decode(event.data, event.size, messages.back())) << channel;
+  }
+  return messages;
+}
+
+void expectSameRecord(const TrialRecord& a, const TrialRecord& b)
+{
+  EXPECT_EQ(rowOf(a.score), rowOf(b.score));
+  EXPECT_EQ(a.score.more, b.score.more);
+  EXPECT_EQ(a.configuration, b.configuration);
+  EXPECT_EQ(a.variant, b.variant);
+  EXPECT_EQ(a.path, b.path);
+  ASSERT_EQ(a.tip.size(), b.tip.size());
+  for (std::size_t i = 0; i < a.tip.size(); ++i) ASSERT_EQ(a.tip[i].error, b.tip[i].error);
+  ASSERT_EQ(a.events.size(), b.events.size());
+  for (std::size_t i = 0; i < a.events.size(); ++i) EXPECT_EQ(a.events[i].what, b.events[i].what);
+  EXPECT_EQ(a.pose_errors_px, b.pose_errors_px);
+  EXPECT_EQ(a.frame_to_command_s, b.frame_to_command_s);
+  EXPECT_EQ(cv::norm(a.retina.bgr, b.retina.bgr, cv::NORM_INF), 0.0);
+}
+
+TEST(Trial, SendsTheSameBytesTwice)
+{
+  ShortTrial again("task: trace\naid: hard\n", 3, traced().scene);
+  again.run();
+  ASSERT_GT(again.events.size(), 10'000U);
+  EXPECT_TRUE(again.events == traced().events);
+}
+
+TEST(Trial, SendsOtherBytesForAnotherSeed)
+{
+  const std::string bare = "task: trace\naid: none\n";
+  ShortTrial other(bare, 4, traced().scene), same(bare, 3, traced().scene);
+  EXPECT_FALSE(other.run().events == same.run().events);
+}
+
+TEST(TrialJudge, SaysOfALogWhatItSaidOfTheTrial)
+{
+  TrialJudge judge;  // that makes the scene itself, from the log
+  for (const KeptEvent& event : traced().events) judge.take(event.event());
+  ASSERT_TRUE(judge.isTrial());
+  expectSameRecord(judge.record(), traced().judge.record());
+}
+
+TEST(TrialJudge, PassesOverWhatIsNotItsOwn)
+{
+  const ShortTrial& trial = traced();
+  TrialJudge judge(trial.scene);
+  const KeptEvent broken{0, trial.events.front().utime, "TRUTH", "not a message"}, other{0, 0, "OTHER", "x"};
+  for (const KeptEvent& event : trial.events) {
+    judge.take(broken.event());
+    judge.take(event.event());
+    judge.take(other.event());
+  }
+  expectSameRecord(judge.record(), trial.judge.record());
+  EXPECT_THROW(TrialJudge().record(), std::logic_error);
+}
+
+TEST(Trial, ScoresTheAidedHandAgainstTheTruth)
+{
+  const TrialRecord record = traced().judge.record();
+  EXPECT_EQ(record.score.scenario, "short");
+  EXPECT_EQ(record.score.seed, 3U);
+  EXPECT_EQ(record.score.duration_s, 1.0);
+  EXPECT_EQ(record.tip.size(), 1000U);
+  EXPECT_LT(*record.score.rms_um, 60.0);
+  EXPECT_EQ(record.score.hold_events + record.score.fault_events, 0);
+  EXPECT_EQ(*record.score.tracked_fraction, 1.0);
+  EXPECT_FALSE(record.passed) << "nothing was to go wrong";
+}
+
+TEST(Trial, IsMarkedAtItsStartWhereItCountsFromAndAtItsEnd)
+{
+  const ShortTrial& trial = traced();
+  const std::vector<mark_t> marks = messagesOf<mark_t>(trial, "MARK");
+  ASSERT_EQ(marks.size(), 3U);
+  EXPECT_EQ(trial.events.front().channel, "MARK");
+  EXPECT_EQ(marks[0].kind, mark_t::START);
+  EXPECT_EQ(marks[0].utime, kStart_us);
+  EXPECT_EQ(marks[0].sender, "eyeslam-trial");
+  EXPECT_EQ(marks[0].version, "1.2.3");
+  EXPECT_EQ(marks[0].configuration_hash, configuration::hashOf(trial.setting));
+  EXPECT_EQ(configuration::hashOf(settingOf("short", marks[0].configuration)), marks[0].configuration_hash);
+  const auto name = TrialName::parse(marks[0].note);
+  ASSERT_TRUE(name);
+  EXPECT_EQ(name->scenario, "short");
+  EXPECT_EQ(name->variant, "aid=hard");
+  EXPECT_EQ(name->seed, 3U);
+  EXPECT_EQ(marks[1].kind, mark_t::NOTE);
+  EXPECT_EQ(marks[1].note, kCountsFromHere);
+  EXPECT_EQ(marks[2].kind, mark_t::STOP);
+  EXPECT_EQ(marks[2].note, "");
+  EXPECT_EQ(marks[2].utime - marks[1].utime, 1'000'000);
+  EXPECT_FALSE(TrialName::parse("counts from here"));
+  EXPECT_FALSE(TrialName::parse("{\"scenario\": 3, \"seed\": -1}"));
+}
+
+TEST(Trial, HasEachMillisecondsMessagesUnderItsTimeAndItsTruthOnce)
+{
+  const ShortTrial& trial = traced();
+  EXPECT_TRUE(std::is_sorted(trial.events.begin(), trial.events.end(),
+                             [](const KeptEvent& a, const KeptEvent& b) { return a.utime < b.utime; }));
+  for (std::size_t i = 0; i < trial.events.size(); ++i) ASSERT_EQ(trial.events[i].number, static_cast<std::int64_t>(i));
+  const std::vector<truth_t> truths = messagesOf<truth_t>(trial, "TRUTH");
+  for (std::size_t i = 0; i < truths.size(); ++i)
+    ASSERT_EQ(truths[i].utime, kStart_us + 1000 * static_cast<std::int64_t>(i));
+  std::set<std::string> channels;
+  for (const KeptEvent& event : trial.events) channels.insert(event.channel);
+  for (const char* channel : {"MARK", "MICRON_STATE", "MICRON_COMMAND", "LASER_STATE", "TRUTH", "RETINA_POSE",
+                              "TOOL_TIP", "VESSEL_MAP", "OPERATOR", "REGISTRATION", "SERVO_STATUS"})
+    EXPECT_THAT(channels, Contains(channel));
+}
+
+TEST(Trial, LetsOutWhatItsListenerThrows)
+{
+  const ShortTrial trial("task: trace\naid: none\n", 3, traced().scene);
+  int heard = 0;
+  Trial running(trial.setting, trial.name, "1.2.3", *trial.scene, [&heard](const files::LogEvent&) {
+    if (++heard == 20) throw std::runtime_error("disk full");
+  });
+  EXPECT_THROW(
+      {
+        for (int i = 0; i < 100; ++i) running.step();
+      },
+      std::runtime_error);
+}
+
+TEST(Trial, HoldsWithItsReasonWhenTheOperatorIsLostAndPassesWhereThatMustBe)
+{
+  const std::string lost = "aid: hard\nduration_s: 1.5\nfault: {kind: operator_lost, at_s: 0.5, for_s: 5, must: ";
+  ShortTrial trial(lost + "hold, reason: operator_stale}\n", 3, traced().scene);
+  const TrialRecord record = trial.run().judge.record();
+  EXPECT_TRUE(record.passed.value_or(false)) << record.verdict;
+  EXPECT_EQ(record.score.hold_events, 1);
+  const auto hold = std::find_if(record.events.begin(), record.events.end(),
+                                 [](const TrialEvent& event) { return event.what == "hold"; });
+  ASSERT_NE(hold, record.events.end());
+  EXPECT_EQ(hold->reason, "operator_stale");
+  EXPECT_GT(hold->t_s, 0.5);
+  EXPECT_LT(hold->t_s, 0.8);
+  EXPECT_FALSE(hold->warning) << "it was to be so";
+
+  // The same log, by what a scenario wants that is not so.
+  for (const char* must : {"fault}\n", "hold, reason: pose_old}\n", "go_on}\n"}) {
+    const ShortTrial wants(lost + must, 3, trial.scene);
+    TrialJudge judge(trial.scene);
+    for (const KeptEvent& kept : trial.events) {
+      mark_t mark{};
+      files::LogEvent event = kept.event();
+      if (kept.channel != "MARK" || !messaging::decode(event.data, event.size, mark) || mark.kind != mark_t::START) {
+        judge.take(event);
+        continue;
+      }
+      mark.configuration = configuration::yamlOf(wants.setting, configuration::YamlComments::left_out);
+      std::string bytes(static_cast<std::size_t>(mark.getEncodedSize()), '\0');
+      mark.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+      judge.take(KeptEvent{kept.number, kept.utime, kept.channel, bytes}.event());
+    }
+    EXPECT_FALSE(judge.record().passed.value_or(true)) << must;
+    EXPECT_THAT(judge.record().verdict, HasSubstr("it did not")) << must;
+  }
+}
+
+TEST(Trial, HoldsAPlaceBetterThanTheBareHandByFarAndNeverStops)
+{
+  ShortTrial held("task: hold\naid: hard\nsettling_s: 2\nduration_s: 3\n");
+  const TrialRecord record = held.run().judge.record();
+  EXPECT_TRUE(held.swept_plane) << "the aiming beam was not seen";
+  EXPECT_LT(*record.score.rms_um, 20.0);
+  EXPECT_LT(*record.score.p95_um, 35.0);
+  EXPECT_EQ(record.score.hold_events + record.score.fault_events, 0);
+  EXPECT_EQ(record.tracked, record.frames);
+  EXPECT_EQ(record.frames, 90);
+  EXPECT_LT(errorFigures(record.pose_errors_px).rms, 0.5);
+  // Of a calibration sweep, and of a shaft that turns about its port.
+  EXPECT_GT(record.fastest_tip, 3e-3);
+  EXPECT_LT(record.fastest_tip, 30e-3);
+  EXPECT_GT(record.worst_pivot, 0.0);
+  EXPECT_LT(record.worst_pivot, 100e-6);
+
+  ShortTrial bare("task: hold\naid: none\nsettling_s: 2\nduration_s: 3\n", 3, held.scene);
+  EXPECT_GT(*bare.run().judge.record().score.rms_um, 100.0);
+}
+
+// Like the replay of a log: the servo alone, of whatever process, on what it heard in the trial.
+TEST(LockStepServo, SendsTheSameBytesForTheSameMessagesInTheSameMilliseconds)
+{
+  const std::set<std::string> own{"MICRON_COMMAND", "LASER_COMMAND", "REGISTRATION", "SERVO_STATUS"};
+  const ShortTrial& trial = traced();
+  messaging::Link link("memq://", static_cast<std::int64_t>(trial.name.seed) + 1, std::nullopt);
+  std::vector<std::string> said, expected;
+  messaging::EventTap tap(link, [&](const messaging::TappedEvent& event) {
+    if (own.count(std::string(event.channel)) == 0) return;
+    said.push_back(std::string(event.channel) + std::string(reinterpret_cast<const char*>(event.data), event.size));
+  });
+  LockStepServo servo({trial.setting.servo, trial.setting.preparation, trial.setting.calibration}, std::nullopt, link);
+  auto event = trial.events.begin();
+  while (event != trial.events.end()) {
+    const messaging::ReceiveTime now{event->utime, event->utime};
+    for (; event != trial.events.end() && event->utime == now.utime; ++event) {
+      if (own.count(event->channel) != 0) {
+        expected.push_back(event->channel + event->bytes);
+      } else {
+        link.send(event->channel, reinterpret_cast<const std::uint8_t*>(event->bytes.data()), event->bytes.size());
+      }
+    }
+    link.drain(now);
+    servo.cycle(now);
+    link.drain(now);
+  }
+  ASSERT_GT(expected.size(), 5000U);
+  EXPECT_TRUE(said == expected);
+}
+
+}  // namespace
+}  // namespace eyeslam::trials
