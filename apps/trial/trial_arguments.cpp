@@ -88,6 +88,14 @@ Shard shardOf(const TrialArguments& arguments)
   throw UsageError(fmt::format("--shard {}: I/N with I from 1 to N is wanted, such as 1/4", text));
 }
 
+std::vector<configuration::Assignment> settingsOf(const TrialArguments& arguments)
+{
+  std::vector<configuration::Assignment> settings;
+  settings.reserve(arguments.settings.size());
+  for (const std::string& setting : arguments.settings) settings.push_back(configuration::parseSetting(setting));
+  return settings;
+}
+
 std::vector<std::uint64_t> seedsOf(const TrialArguments& arguments)
 {
   std::vector<std::uint64_t> seeds;

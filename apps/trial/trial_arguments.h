@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "eyeslam/configuration/assignment.h"
+
 namespace eyeslam::apps {
 
 /// The command line of `eyeslam-trial` (contracts, sections 2 and 7).
@@ -35,6 +37,9 @@ void check(const TrialArguments& arguments);
 
 /// @throws UsageError where the text is no I/N with 1 <= I <= N
 Shard shardOf(const TrialArguments& arguments);
+
+/// @throws configuration::ConfigurationError
+std::vector<configuration::Assignment> settingsOf(const TrialArguments& arguments);
 
 std::vector<std::uint64_t> seedsOf(const TrialArguments& arguments);
 

@@ -44,8 +44,8 @@ PlannedTrial planned(const Variant& variant, std::uint64_t seed)
 
 TrialList::TrialList(const TrialArguments& arguments)
 {
-  std::vector<configuration::Assignment> settings;
-  for (const std::string& setting : arguments.settings) settings.push_back(configuration::parseSetting(setting));
+  const std::vector<configuration::Assignment> settings = settingsOf(arguments);
+  scenarios_.reserve(arguments.scenarios.size());
   for (const std::string& path : arguments.scenarios) scenarios_.push_back(trials::readScenario(path, settings));
   std::vector<PlannedTrial> all;
   for (const std::vector<Variant>& variants : scenarios_)

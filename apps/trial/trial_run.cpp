@@ -44,6 +44,7 @@ std::string reportOf(const std::vector<trials::TrialRecord>& records)
 void writeStudy(const TrialArguments& arguments, const std::vector<trials::TrialRecord>& records)
 {
   std::vector<trials::TrialScore> scores;
+  scores.reserve(records.size());
   for (const trials::TrialRecord& record : records) scores.push_back(record.score);
   trials::writeResultsTable(pathIn(arguments, "results.csv"), scores);
   files::PartialFile report(pathIn(arguments, "report.html"));
@@ -83,9 +84,7 @@ void dumpConfiguration(const TrialArguments& arguments)
   if (arguments.dump != "yaml")
     throw UsageError(fmt::format("--dump-config={}: yaml or markdown is wanted", arguments.dump));
   if (arguments.scenarios.size() != 1) throw UsageError("--dump-config: one SCENARIO is wanted");
-  std::vector<configuration::Assignment> settings;
-  for (const std::string& setting : arguments.settings) settings.push_back(configuration::parseSetting(setting));
-  const auto variants = trials::readScenario(arguments.scenarios.front(), settings);
+  const auto variants = trials::readScenario(arguments.scenarios.front(), settingsOf(arguments));
   fmt::print("{}", configuration::yamlOf(variants.front().setting));
 }
 
