@@ -35,7 +35,7 @@ TrialJob::~TrialJob()
   folder_.reset();
 }
 
-std::optional<trials::TrialRecord> TrialJob::run(std::shared_ptr<const trials::TrialScene> scene,
+std::optional<trials::TrialRecord> TrialJob::run(const std::shared_ptr<const trials::TrialScene>& scene,
                                                  const std::function<bool(double)>& goesOn)
 {
   const double start = monotonicSeconds();

@@ -30,7 +30,7 @@ class TrialJob {
 
   /// @param goesOn  is told the simulated time, s, every so often; false ends the trial, and its folder never appears
   /// @throws what keeps it from being run to its end
-  std::optional<trials::TrialRecord> run(std::shared_ptr<const trials::TrialScene> scene,
+  std::optional<trials::TrialRecord> run(const std::shared_ptr<const trials::TrialScene>& scene,
                                          const std::function<bool(double)>& goesOn);
 
  private:
