@@ -28,6 +28,8 @@ constexpr double kRadius = 20e-6;              // m, of a vessel that a microsco
 constexpr double kApart = 200e-6;              // m, what a leaning hand may be off (loop study, 1)
 constexpr double kBeyond = 300e-6;             // m, the same twice
 constexpr double kRetina_mm[] = {18.0, 14.0};  // room for a view beside the disc, wherever the eye goes
+constexpr double kDiscRoom = 400e-6;           // m
+constexpr double kDiscBrightness = 1.3;        // of the mean
 constexpr double kSeam = 1.25;                 // of half a view, that must stay on the retina
 
 cv::Mat read(const std::string& path, int mode)
@@ -83,6 +85,21 @@ retina::VesselMap mapOf(const cv::Mat_<float>& calibre_px, double um_per_px)
   return map;
 }
 
+// The disc, where all vessels meet and nobody works, with some room about it.
+cv::Mat_<std::uint8_t> brightPlaces(const simulation::Fundus& fundus)
+{
+  cv::Mat green, smooth;
+  cv::extractChannel(fundus.bgr, green, 1);
+  const double px = kMicro * fundus.um_per_px;
+  const int side = 2 * static_cast<int>(0.5 * kDiscRoom / px) + 1;
+  cv::blur(green, smooth, {side, side});
+  const double usual = cv::mean(smooth)[0];
+  cv::Mat_<std::uint8_t> bright;
+  cv::compare(smooth, kDiscBrightness * usual, bright, cv::CMP_GT);
+  cv::dilate(bright, bright, cv::Mat::ones(side, side, CV_8U));
+  return bright;
+}
+
 }  // namespace
 
 TrialScene::TrialScene(const TrialSetting& setting, std::uint64_t seed)
@@ -123,7 +140,13 @@ void TrialScene::chooseVessel(double longest)
   const Eigen::Vector2d border = kSeam * half_view + Eigen::Vector2d::Constant(1e-3 * camera_.reach_mm);
   const Eigen::Vector2d size(fundus_.calibre_px.cols, fundus_.calibre_px.rows);
   const Eigen::Vector2d inset = (border / px).cwiseMin(0.49 * size);
-  const VesselWish wish{{inset, size - inset}, longest / px, kRadius / px, kApart / px, kBeyond / px};
+  const cv::Mat_<std::uint8_t> disc = brightPlaces(fundus_);
+  const VesselWish wish{{inset, size - inset},
+                        longest / px,
+                        kRadius / px,
+                        kApart / px,
+                        [&disc](const Eigen::Vector2d& at) { return disc(cvRound(at.y()), cvRound(at.x())) != 0; },
+                        kBeyond / px};
   const ChosenVessel chosen = vesselToTrace(graph.network(), wish);
   if (chosen.count == 0)
     throw std::invalid_argument("retina: no vessel to trace, apart from its neighbours; take another seed");

@@ -70,7 +70,8 @@ void addRuns(const Way& way, std::size_t number, const VesselWish& wish, std::ve
   };
   for (std::size_t i = beyond; i + beyond < way.size(); ++i) {
     const double step = run.count > 0 ? (way[i] - way[i - 1]).norm() : 0.0;
-    const bool good = wish.area_px.contains(way[i]) && isSmoothAt(way, i) && run.length + step <= wish.longest_px;
+    const bool good = wish.area_px.contains(way[i]) && isSmoothAt(way, i) && run.length + step <= wish.longest_px &&
+                      !(wish.excluded && wish.excluded(way[i]));
     if (!good) {
       end(i + 1);
       continue;
