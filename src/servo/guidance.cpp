@@ -48,6 +48,8 @@ fixtures::KeepOutZone zoneOf(const messaging::Zone& drawn, double m_per_px)
 
 }  // namespace
 
+GuidanceOptions::GuidanceOptions() { vessel.keeps_to = "vessel"; }
+
 Guidance::Guidance(const GuidanceOptions& options) : options_(options), fixtures_(options.fixtures) {}
 
 std::shared_ptr<const fixtures::CenterlineIndex> Guidance::vesselsOfMap() const noexcept

@@ -14,18 +14,13 @@
 
 namespace eyeslam::servo {
 
-/// A hand that leans 150 um RMS per axis (loop study, 1) stays with the vessel that it has.
-inline fixtures::CurveFixtureOptions keptVessel()
-{
-  fixtures::CurveFixtureOptions options;
-  options.keeps_to = "vessel";
-  return options;
-}
-
 struct GuidanceOptions {
+  /// A vessel is kept: a hand leans 150 um RMS per axis (loop study, 1).
+  GuidanceOptions();
+
   fixtures::VirtualFixturesOptions fixtures;
   fixtures::PointFixtureOptions point;
-  fixtures::CurveFixtureOptions vessel = keptVessel();
+  fixtures::CurveFixtureOptions vessel;
   double scaling_least = 0.25;
   std::string standoff_side = "hold";
 
