@@ -19,7 +19,7 @@ enum class FixtureKind { none, filter, scaling, point, vessel, standoff, calibra
 /// The virtual fixture that the human chose. Map frame, full-resolution px.
 struct WantedFixture {
   FixtureKind kind = FixtureKind::none;
-  std::int64_t vessel = -1;                            ///< id in the vessel graph; -1: the nearest to the point, or of no vessel
+  std::int64_t vessel = -1;  ///< id in the vessel graph; -1: the nearest to the point, or of no vessel
   Eigen::Vector2d point_px = Eigen::Vector2d::Zero();  ///< zero unless of a point, or of a vessel without id
   double standoff = 0.0;                               ///< m above the retina, [0, 0.02]; 0 unless standoff
   double lambda = 0.0;                                 ///< [0, 1], share of the hand's departure that passes; 0 = hard

@@ -56,6 +56,7 @@ TEST(Servo, GoesWhereTheHumanWants)
 TEST(Servo, SaysWhyItIsNotWhereTheHumanWants)
 {
   ServoBench bench;
+  bench.vision_speaks = false;
   bench.ask([](OperatorWish& w) {
     w.mode = WantedMode::assist;
     w.fixture.kind = FixtureKind::filter;
@@ -66,9 +67,24 @@ TEST(Servo, SaysWhyItIsNotWhereTheHumanWants)
   bench.servo->adopt(ServoBench::calibration(), ServoBench::kStart_us);
   bench.step();
   EXPECT_EQ(bench.reason(), Reason::no_pose);
+  bench.vision_speaks = true;
   bench.run(100);
   EXPECT_EQ(bench.state(), State::assist);
   EXPECT_EQ(bench.reason(), Reason::none);
+}
+
+// Poses that came while nothing could be made of them: the end of a calibration is no reason to hold.
+TEST(Servo, GoesOnAtOnceWhenItIsRegisteredAndPosesHaveCome)
+{
+  ServoBench bench;
+  bench.ask([](OperatorWish& w) {
+    w.mode = WantedMode::assist;
+    w.fixture.kind = FixtureKind::filter;
+  });
+  bench.run(100);
+  bench.servo->adopt(ServoBench::calibration(), ServoBench::kStart_us);
+  bench.step();
+  EXPECT_EQ(bench.state(), State::assist);
 }
 
 TEST(Servo, HoldsThePlaceOfTheRetinaThatTheHumanNamed)
