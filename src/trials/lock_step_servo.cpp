@@ -10,7 +10,8 @@ constexpr std::int64_t kPlanPeriods = 1000;        // contracts, section 4
 
 }  // namespace
 
-LockStepServo::LockStepServo(const Options& options, std::optional<servo::RetinaPlane> plane, messaging::Link& link)
+LockStepServo::LockStepServo(const Options& options, const std::optional<servo::RetinaPlane>& plane,
+                             messaging::Link& link)
     : calibration_(options.calibration),
       plane_(plane),
       desk_(options.preparation, link),

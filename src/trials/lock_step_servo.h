@@ -25,7 +25,7 @@ class LockStepServo {
 
   /// @param plane  of the retina as a second view would give it, for a calibration whose aiming beam was not seen
   /// @param link   must outlive it
-  LockStepServo(const Options& options, std::optional<servo::RetinaPlane> plane, messaging::Link& link);
+  LockStepServo(const Options& options, const std::optional<servo::RetinaPlane>& plane, messaging::Link& link);
 
   /// One millisecond, after the link was drained with the same time.
   void cycle(const messaging::ReceiveTime& now);
