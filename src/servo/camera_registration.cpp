@@ -15,9 +15,10 @@ using retina::Reason;
 namespace {
 
 constexpr double kPerMillimetre = 1e3;
-constexpr double kDriftShare = 0.05;  // of the newest innovation in the mean: some twenty samples
-constexpr double kMostDrift = 2.0;    // times the limit, that a single sample counts for
-constexpr int kPasses = 12;           // of reweighting in fit()
+constexpr double kDriftShare = 0.05;    // of the newest innovation in the mean: some twenty samples
+constexpr double kClearSight_px = 5.0;  // sigma of a tip that is found along its shaft; trials: 1 px, else 15
+constexpr double kMostDrift = 2.0;      // times the limit, that a single sample counts for
+constexpr int kPasses = 12;             // of reweighting in fit()
 constexpr double kSmallestInformation = 1e-9;
 
 bool isFinite(const TipSample& sample)
@@ -126,7 +127,9 @@ Reason CameraRegistration::add(const TipSample& sample)
     const double noise = std::max(1.0, result_.residual_px / sample.sigma_px);
     const double sigma = std::hypot(noise * sample.sigma_px, result_.sigmaOf(sample.tip));
     const Eigen::Vector2d innovation = sample.image_px - result_.toImage(sample.tip);
-    noteDrift(innovation);
+    // A sight that is itself uncertain, as of a tip over another dark thing, tells little of a drift.
+    const double blur = sample.sigma_px / kClearSight_px;
+    noteDrift(innovation / (1.0 + blur * blur));
     if (innovation.norm() > options_.outlier_sigmas * sigma) {
       result_.reason = verdict();
       return refuse(Reason::outlier);
