@@ -8,7 +8,6 @@ namespace {
 
 // A flood must not take the cycle: 64 messages are 0.4 ms, and at most 4 or 5 are due in a millisecond.
 constexpr std::size_t kMostMessages = 64;
-constexpr std::int64_t kPlanPeriod = 1000;  // cycles; contracts, section 4
 
 }  // namespace
 
@@ -52,13 +51,8 @@ void ServoLoop::leaveSamples()
 
 void ServoLoop::leavePlan()
 {
-  ++cycles_since_plan_;
-  const std::int64_t changes = servo_.ledger().changes();
-  if (servo_.planReason() != retina::Reason::none || in_use_ == nullptr || !plan_) return;
-  if (changes == plan_changes_ && cycles_since_plan_ < kPlanPeriod) return;
-  if (!servo_.ledger().describe(*in_use_, *plan_) || !exchanges_.plans.tryOffer(plan_)) return;
-  plan_changes_ = changes;
-  cycles_since_plan_ = 0;
+  if (!schedule_.isDue(servo_) || in_use_ == nullptr || !plan_) return;
+  if (servo_.ledger().describe(*in_use_, *plan_) && exchanges_.plans.tryOffer(plan_)) schedule_.told(servo_);
 }
 
 }  // namespace eyeslam::apps

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "eyeslam/messaging/link.h"
+#include "eyeslam/servo/plan_schedule.h"
 #include "eyeslam/servo/servo.h"
 #include "real_time/real_time_loop.h"
 #include "servo/cycle_record.h"
@@ -40,8 +41,7 @@ class ServoLoop {
   const servo::Preparation* in_use_ = nullptr;
   SamplesBuffer samples_ = samplesBuffer();
   PlanBuffer plan_ = planBuffer();
-  std::int64_t plan_changes_ = -1;      // of the ledger, when the plan was left last
-  std::int64_t cycles_since_plan_ = 0;  // that it was
+  servo::PlanSchedule schedule_;
   messaging::ServoStatus status_;
 };
 

@@ -6,7 +6,6 @@ namespace eyeslam::trials {
 namespace {
 
 constexpr std::int64_t kPreparationPeriods = 100;  // as often as a background thread would look
-constexpr std::int64_t kPlanPeriods = 1000;        // contracts, section 4
 
 }  // namespace
 
@@ -40,15 +39,10 @@ void LockStepServo::prepare(const messaging::ReceiveTime& now)
 
 void LockStepServo::publishPlan(std::int64_t utime)
 {
-  ++since_plan_;
-  if (servo_.planReason() != retina::Reason::none) return;
-  const std::int64_t changes = servo_.ledger().changes();
-  if (changes == plan_changes_ && since_plan_ < kPlanPeriods) return;
-  if (!servo_.ledger().describe(*desk_.newest(), plan_)) return;
+  if (!schedule_.isDue(servo_) || !servo_.ledger().describe(*desk_.newest(), plan_)) return;
   plan_.utime = utime;
   plans_.publish(plan_, utime);
-  plan_changes_ = changes;
-  since_plan_ = 0;
+  schedule_.told(servo_);
 }
 
 }  // namespace eyeslam::trials

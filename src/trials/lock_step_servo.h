@@ -7,6 +7,7 @@
 #include "eyeslam/burn_plan_t.hpp"
 #include "eyeslam/messaging/link.h"
 #include "eyeslam/servo/calibration.h"
+#include "eyeslam/servo/plan_schedule.h"
 #include "eyeslam/servo/preparation.h"
 #include "eyeslam/servo/servo.h"
 #include "eyeslam/servo/servo_options.h"
@@ -30,12 +31,8 @@ class LockStepServo {
   /// One millisecond, after the link was drained with the same time.
   void cycle(const messaging::ReceiveTime& now);
 
-  const servo::Servo& servo() const { return servo_; }
-  /// Never null.
-  std::shared_ptr<const servo::Preparation> preparation() const { return desk_.newest(); }
   /// The retina's plane comes from the aiming beam.
   bool sweptPlane() const { return swept_plane_; }
-  const servo::PreparationDesk& deskForDebug() const { return desk_; }
 
  private:
   void prepare(const messaging::ReceiveTime& now);
@@ -47,7 +44,8 @@ class LockStepServo {
   servo::Servo servo_;
   messaging::Publisher<burn_plan_t> plans_;
   burn_plan_t plan_{};
-  std::int64_t cycles_ = 0, since_plan_ = 0, plan_changes_ = 0;
+  servo::PlanSchedule schedule_;
+  std::int64_t cycles_ = 0;
   bool swept_plane_ = false;
 };
 

@@ -52,8 +52,8 @@ class Trial {
   bool step();
   /// Since the start, s.
   double time() const { return hardware_.truth().t_s; }
-  const LockStepServo& servoForDebug() const { return *servo_; }
-  const LockStepVision& visionForDebug() const { return *vision_; }
+  /// Null without an aid.
+  const LockStepServo* servo() const { return servo_ ? &*servo_ : nullptr; }
   /// What the camera saw in this very step; null without a frame.
   const cv::Mat* frame() const { return frame_; }
 

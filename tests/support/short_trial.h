@@ -67,7 +67,7 @@ struct ShortTrial {
       judge.take(event);
     });
     while (trial.step()) continue;
-    if (!setting.scenario.isManual()) swept_plane = trial.servoForDebug().sweptPlane();
+    if (trial.servo()) swept_plane = trial.servo()->sweptPlane();
     return *this;
   }
 };
