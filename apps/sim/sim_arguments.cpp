@@ -8,7 +8,7 @@
 
 #include "command_line/number_check.h"
 #include "command_line/program.h"
-#include "eyeslam/files/file_error.h"
+#include "eyeslam/files/picture_file.h"
 #include "eyeslam/simulation/fundus_photograph.h"
 #include "eyeslam/simulation/hardware_fault.h"
 #include "eyeslam/simulation/procedural_fundus.h"
@@ -89,20 +89,6 @@ void addLiveOptions(CLI::App& app, SimArguments& a)
   app.add_flag("--foot-switch", a.foot_switch, "the laser's foot switch is pressed")->group("Live");
 }
 
-cv::Mat picture(const std::string& option, const std::string& path, int mode)
-{
-  cv::Mat image;
-  try {
-    image = cv::imread(path, mode);
-  } catch (const cv::Exception&) {
-    image.release();
-  }
-  if (image.empty())
-    throw files::FileError(
-        fmt::format("{} {}: not a picture that can be read; JPEG, PNG or TIFF is wanted", option, path));
-  return image;
-}
-
 }  // namespace
 
 void addOptions(CLI::App& app, SimArguments& arguments)
@@ -132,9 +118,9 @@ simulation::Fundus fundusOf(const SimArguments& arguments, double um_per_px)
     options.um_per_px = um_per_px;
     return simulation::proceduralFundus(options, arguments.seed);
   }
-  const cv::Mat photograph = picture("--retina", arguments.retina, cv::IMREAD_COLOR);
+  const cv::Mat photograph = files::readPicture("--retina", arguments.retina, cv::IMREAD_COLOR);
   const cv::Mat mask =
-      arguments.vessels.empty() ? cv::Mat() : picture("--vessels", arguments.vessels, cv::IMREAD_GRAYSCALE);
+      arguments.vessels.empty() ? cv::Mat() : files::readPicture("--vessels", arguments.vessels, cv::IMREAD_GRAYSCALE);
   simulation::FundusPhotographOptions options;
   options.um_per_px = arguments.retina_um_per_px;
   return simulation::fundusFromPhotograph(photograph, mask, options);

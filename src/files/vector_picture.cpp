@@ -2,13 +2,14 @@
 #include "eyeslam/files/vector_picture.h"
 
 #include <fmt/format.h>
-#include <sodium.h>
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <utility>
+
+#include "eyeslam/files/markup.h"
 
 namespace eyeslam::files {
 
@@ -22,29 +23,6 @@ constexpr int kJpegQuality = 90;
 std::string hex(const cv::Scalar& bgr)
 {
   return fmt::format("#{:02x}{:02x}{:02x}", cvRound(bgr[2]), cvRound(bgr[1]), cvRound(bgr[0]));
-}
-
-std::string base64(const std::vector<unsigned char>& bytes)
-{
-  std::string text(sodium_base64_encoded_len(bytes.size(), sodium_base64_VARIANT_ORIGINAL), '\0');
-  sodium_bin2base64(text.data(), text.size(), bytes.data(), bytes.size(), sodium_base64_VARIANT_ORIGINAL);
-  text.resize(text.find('\0'));
-  return text;
-}
-
-std::string escaped(const std::string& text)
-{
-  std::string result;
-  for (const char letter : text) {
-    if (letter == '&') {
-      result += "&amp;";
-    } else if (letter == '<') {
-      result += "&lt;";
-    } else {
-      result += letter;
-    }
-  }
-  return result;
 }
 
 cv::Point fixedPoint(const cv::Point2d& point, double scale)
@@ -133,8 +111,8 @@ std::string VectorPicture::svg() const
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
       "font-family=\"Helvetica, Arial, sans-serif\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n",
       width, height);
-  svg += fmt::format("<image width=\"{}\" height=\"{}\" href=\"data:image/jpeg;base64,{}\"/>\n", width, height,
-                     base64(jpeg));
+  svg +=
+      fmt::format("<image width=\"{}\" height=\"{}\" href=\"{}\"/>\n", width, height, dataAddress("image/jpeg", jpeg));
   for (std::size_t i = 0; i < clips_.size(); ++i) {
     svg += fmt::format("<clipPath id=\"clip{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n", i,
                        clips_[i].x, clips_[i].y, clips_[i].width, clips_[i].height);

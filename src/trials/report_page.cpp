@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
-#include "eyeslam/trials/markup.h"
+#include "eyeslam/files/markup.h"
 
 namespace eyeslam::trials {
+
+using files::escaped;
 
 namespace {
 

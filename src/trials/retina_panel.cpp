@@ -8,9 +8,11 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "eyeslam/trials/markup.h"
+#include "eyeslam/files/markup.h"
 
 namespace eyeslam::trials {
+
+using files::pngAddress;
 
 namespace {
 

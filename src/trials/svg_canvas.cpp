@@ -9,9 +9,12 @@
 #include <string_view>
 #include <utility>
 
-#include "eyeslam/trials/markup.h"
+#include "eyeslam/files/markup.h"
+#include "eyeslam/trials/segment.h"
 
 namespace eyeslam::trials {
+
+using files::escaped;
 
 namespace {
 
@@ -45,13 +48,6 @@ std::string wayOf(const Points& points)
     y = next_y;
   }
   return way;
-}
-
-double distanceToLine(const Eigen::Vector2d& point, const Eigen::Vector2d& from, const Eigen::Vector2d& to)
-{
-  const Eigen::Vector2d way = to - from;
-  const double along = std::clamp((point - from).dot(way) / std::max(way.squaredNorm(), 1e-18), 0.0, 1.0);
-  return (from + along * way - point).norm();
 }
 
 }  // namespace
@@ -141,7 +137,7 @@ Points simplified(const Points& points, double tolerance)
     double farthest = tolerance;
     std::size_t corner = 0;
     for (std::size_t i = from + 1; i < to; ++i) {
-      const double distance = distanceToLine(points[i], points[from], points[to]);
+      const double distance = distanceToSegment(points[i], points[from], points[to]);
       if (distance > farthest) {
         farthest = distance;
         corner = i;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "eyeslam/trials/trial_scene.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -10,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
-#include "eyeslam/files/file_error.h"
+#include "eyeslam/files/picture_file.h"
 #include "eyeslam/fixtures/vessel_graph.h"
 #include "eyeslam/simulation/eye_camera.h"
 #include "eyeslam/simulation/fundus_photograph.h"
@@ -34,16 +32,7 @@ constexpr double kSeam = 1.25;                 // of half a view, that must stay
 
 cv::Mat read(const std::string& path, int mode)
 {
-  cv::Mat image;
-  try {
-    image = cv::imread(path, mode);
-  } catch (const cv::Exception&) {
-    image.release();
-  }
-  if (image.empty())
-    throw files::FileError(
-        fmt::format("retina {}: not a picture that can be read; 'procedural', JPEG, PNG or TIFF is wanted", path));
-  return image;
+  return files::readPicture("retina", path, mode, "'procedural', JPEG, PNG or TIFF");
 }
 
 simulation::Fundus fundusOf(const TrialSetting& setting, std::uint64_t seed)

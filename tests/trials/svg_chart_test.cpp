@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/files/markup.h"
 #include "eyeslam/simulation/random.h"
-#include "eyeslam/trials/markup.h"
 #include "support/xml_check.h"
 
 namespace eyeslam::trials {
 namespace {
 
+using files::escaped;
 using support::XmlCheck;
 
 double distanceToWay(const Eigen::Vector2d& point, const Points& way)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "eyeslam/trials/markup.h"
+#include "eyeslam/files/markup.h"
 
 #include <sodium.h>
 
@@ -7,7 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <vector>
 
-namespace eyeslam::trials {
+namespace eyeslam::files {
 
 namespace {
 
@@ -59,14 +59,19 @@ std::string escaped(const std::string& text)
   return result;
 }
 
+std::string dataAddress(const std::string& type, const std::vector<unsigned char>& bytes)
+{
+  std::string text(sodium_base64_encoded_len(bytes.size(), sodium_base64_VARIANT_ORIGINAL), '\0');
+  sodium_bin2base64(text.data(), text.size(), bytes.data(), bytes.size(), sodium_base64_VARIANT_ORIGINAL);
+  text.resize(text.find('\0'));
+  return "data:" + type + ";base64," + text;
+}
+
 std::string pngAddress(const cv::Mat& bgr)
 {
   std::vector<unsigned char> png;
   cv::imencode(".png", bgr, png, {cv::IMWRITE_PNG_COMPRESSION, kPngEffort});
-  std::string text(sodium_base64_encoded_len(png.size(), sodium_base64_VARIANT_ORIGINAL), '\0');
-  sodium_bin2base64(text.data(), text.size(), png.data(), png.size(), sodium_base64_VARIANT_ORIGINAL);
-  text.resize(text.find('\0'));
-  return "data:image/png;base64," + text;
+  return dataAddress("image/png", png);
 }
 
-}  // namespace eyeslam::trials
+}  // namespace eyeslam::files
