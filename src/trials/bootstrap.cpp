@@ -1,28 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "eyeslam/trials/bootstrap.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
 
+#include "eyeslam/files/score.h"
 #include "eyeslam/simulation/random.h"
 
 namespace eyeslam::trials {
 
 namespace {
 
-constexpr std::size_t kResamples = 4000;  // moves a bound by about a fiftieth of the interval's width
-constexpr double kOutside = 0.05;         // of the resamples, half on each side
-
-/// Linear between the two nearest; `sorted` is not empty.
-double quantile(const std::vector<double>& sorted, double share)
-{
-  const double place = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
+constexpr std::size_t kResamples = 4000;    // moves a bound by about a fiftieth of the interval's width
+constexpr double kLow = 2.5, kHigh = 97.5;  // percent of the resamples: 95 lie between
 
 void draw(simulation::Random& random, std::vector<std::size_t>& chosen)
 {
@@ -54,8 +45,7 @@ Estimate bootstrap(std::size_t count, const std::function<double(const std::vect
     draw(random, chosen);
     figure = statistic(chosen);
   }
-  std::sort(resampled.begin(), resampled.end());
-  return {value, quantile(resampled, 0.5 * kOutside), quantile(resampled, 1.0 - 0.5 * kOutside)};
+  return {value, files::percentile(resampled, kLow), files::percentile(resampled, kHigh)};
 }
 
 PairedComparison comparePairs(const std::vector<double>& unaided, const std::vector<double>& aided, std::uint64_t seed)

@@ -6,23 +6,20 @@
 
 #include "eyeslam/fixtures/burn_order.h"
 #include "eyeslam/servo/plan_messages.h"
+#include "eyeslam/trials/lock_step_time.h"
 
 namespace eyeslam::trials {
 
 namespace {
 
-constexpr std::size_t kSeenOver_ms = 100;    // the error is a mean over it; loop study, 1
-constexpr std::int64_t kPlanPeriods = 1000;  // contracts, section 4
-constexpr std::int16_t kDone = 1;            // burn_target_t
+constexpr std::size_t kSeenOver_ms = 100;  // the error is a mean over it; loop study, 1
+constexpr std::int16_t kDone = 1;          // burn_target_t
 constexpr double kMilli = 1e-3;
 
 fixtures::BurnPlan planOnTruth(const TrialSetting& setting, const TrialScene& scene)
 {
-  fixtures::BurnPrescription asked = setting.prescription;
   const Eigen::Vector2d middle = scene.middle().head<2>() / (1e-6 * scene.umPerPx());
-  if (asked.pattern.centre_px.empty())
-    asked.pattern.centre_px = std::to_string(middle.x()) + " " + std::to_string(middle.y());
-  return fixtures::orderedPlan(scene.trueMap(), asked);
+  return fixtures::orderedPlan(scene.trueMap(), prescriptionAbout(setting, middle));
 }
 
 }  // namespace

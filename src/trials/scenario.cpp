@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
+#include <string>
 
 #include "eyeslam/configuration/listing.h"
 #include "eyeslam/simulation/retina_motion_options.h"
@@ -152,6 +153,14 @@ TrialSetting presetBy(const Scenario& scenario)
   if (scenario.isLaser() && scenario.isManual()) surgeon.gain_hz = scenario.laser.manual_gain_hz;
   if (scenario.isLaser() && !scenario.isManual()) surgeon.dead_zone_um = scenario.laser.rest_um;
   return setting;
+}
+
+fixtures::BurnPrescription prescriptionAbout(const TrialSetting& setting, const Eigen::Vector2d& middle_px)
+{
+  fixtures::BurnPrescription asked = setting.prescription;
+  if (asked.pattern.centre_px.empty())
+    asked.pattern.centre_px = std::to_string(middle_px.x()) + " " + std::to_string(middle_px.y());
+  return asked;
 }
 
 std::vector<Variant> readScenario(const std::string& path, const std::vector<Assignment>& settings)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -167,6 +168,9 @@ struct TrialSetting {
 
 /// The parts' options as the scenario wants them.
 TrialSetting presetBy(const Scenario& scenario);
+
+/// What a plan is asked for, about this place where the prescription leaves its centre open. @param middle_px  map px
+fixtures::BurnPrescription prescriptionAbout(const TrialSetting& setting, const Eigen::Vector2d& middle_px);
 
 /// A setting and the swept values that make it this one.
 struct Variant {

@@ -15,7 +15,6 @@ namespace eyeslam::trials {
 
 namespace {
 
-constexpr std::int64_t kPeriod_us = 1000;
 constexpr double kLatest_s = 40.0;     // what never began by then begins no more
 constexpr double kAfterwards_s = 0.3;  // that a log shows of what comes after the last burn
 

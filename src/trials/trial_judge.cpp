@@ -9,6 +9,8 @@
 #include "eyeslam/messaging/record_messages.h"
 #include "eyeslam/messaging/servo_messages.h"
 #include "eyeslam/retina/reason.h"
+#include "eyeslam/trials/lock_step_time.h"
+#include "eyeslam/trials/segment.h"
 #include "eyeslam/trials/trial_marks.h"
 
 namespace eyeslam::trials {
@@ -18,14 +20,13 @@ namespace {
 constexpr double kMicro = 1e-6;
 constexpr double kFar = 60e-6;    // issue 17: pulses more than 60 um off
 constexpr double kMoved = 40e-6;  // the same: explained where the retina moved more
-constexpr std::int64_t kPeriod_us = 1000;
 constexpr double kPeriod_s = 1e-3;
 
 template <class Message, class Use>
 bool takeAs(const files::LogEvent& event, const char* channel, Use use)
 {
   if (event.channel != channel) return false;
-  thread_local Message message;
+  Message message{};
   if (messaging::decode(event.data, event.size, message)) use(message);
   return true;
 }
@@ -38,11 +39,6 @@ std::string wordOf(std::int16_t reason)
 }
 
 }  // namespace
-
-Eigen::Vector2d TrialJudge::RetinaAt::toWorld(const Eigen::Vector2d& place) const
-{
-  return centre + Eigen::Rotation2Dd(theta) * (place - centre) + shift;
-}
 
 void TrialJudge::take(const files::LogEvent& event)
 {
@@ -68,7 +64,6 @@ void TrialJudge::take(const mark_t& mark)
   if (mark.kind == mark_t::NOTE && mark.note == kCountsFromHere && counts_from_ == 0) countFrom(mark.utime);
   if (mark.kind != mark_t::STOP || mark.sender != start_.sender) return;
   over_ = true;
-  stopped_ = mark.utime;
   never_began_ = mark.note == kNeverBegan;
 }
 
@@ -84,9 +79,8 @@ void TrialJudge::take(const truth_t& truth)
   if (!setting_ || over_) return;
   if (retina_.empty()) first_truth_ = truth.utime;
   um_per_px_ = truth.um_per_px;
-  retina_.push_back({{truth.retina_centre[0], truth.retina_centre[1]},
-                     {truth.retina_shift[0], truth.retina_shift[1]},
-                     truth.retina_theta});
+  retina_.push_back(
+      {{truth.retina_centre[0], truth.retina_centre[1], 0.0}, Eigen::Vector3d(truth.retina_shift), truth.retina_theta});
   if (truth.frame >= 0) {
     const retina::Pose2 pose = poseOf(truth.frame_x_px, truth.frame_y_px, truth.frame_theta, 1.0);
     if (!first_frame_) first_frame_ = pose;
@@ -100,9 +94,7 @@ void TrialJudge::take(const truth_t& truth)
 // In the world, where the manipulator is.
 void TrialJudge::watchSpeed(const truth_t& truth)
 {
-  Eigen::Vector3d tip(truth.tip);
-  tip.head<2>() = retina_.back().toWorld(tip.head<2>());
-  tip.z() += truth.retina_shift[2];
+  const Eigen::Vector3d tip = retina_.back().toWorld(Eigen::Vector3d(truth.tip));
   if (last_world_tip_) fastest_tip_ = std::max(fastest_tip_, (tip - *last_world_tip_).norm() / kPeriod_s);
   last_world_tip_ = tip;
 }
@@ -113,12 +105,10 @@ double TrialJudge::errorOf(const Eigen::Vector3d& tip) const
   if (setting_->scenario.task == "standoff") return std::abs(tip.z() - path.front().z());
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < path.size(); ++i) {
-    const Eigen::Vector2d from = path[i].head<2>();
-    const Eigen::Vector2d way = path[std::min(i + 1, path.size() - 1)].head<2>() - from;
-    const double t = std::clamp((tip.head<2>() - from).dot(way) / std::max(way.squaredNorm(), 1e-24), 0.0, 1.0);
-    nearest = std::min(nearest, (from + t * way - tip.head<2>()).squaredNorm());
+    const Eigen::Vector3d& next = path[std::min(i + 1, path.size() - 1)];
+    nearest = std::min(nearest, distanceToSegment(tip.head<2>(), path[i].head<2>(), next.head<2>()));
   }
-  return std::sqrt(nearest);
+  return nearest;
 }
 
 void TrialJudge::judgeTip(const truth_t& truth)
@@ -198,7 +188,7 @@ Eigen::Vector2d TrialJudge::ontoRetina(double x_px, double y_px) const
   return px * (own_map ? Eigen::Vector2d(centre + *first_frame_ * (map_px - centre)) : map_px);
 }
 
-TrialJudge::RetinaAt TrialJudge::retinaAt(std::int64_t utime) const
+const simulation::RetinaPose& TrialJudge::retinaAt(std::int64_t utime) const
 {
   const std::int64_t step = (utime - first_truth_ + kPeriod_us / 2) / kPeriod_us;
   return retina_[static_cast<std::size_t>(
@@ -222,9 +212,9 @@ PulseRecord TrialJudge::recordOf(const Pulse& pulse) const
   record.clearance = scene_->vesselDistance(pulse.spot) - 0.5 * burn;
   record.touched_calibre = scene_->widestWithin(pulse.spot, 0.5 * burn);
   record.far = record.placement > kFar;
-  const Eigen::Vector2d moved =
-      retinaAt(pulse.end).toWorld(record.wanted) - retinaAt(pulse.newest_frame).toWorld(record.wanted);
-  record.explained = record.far && moved.norm() > kMoved;
+  const Eigen::Vector3d wanted(record.wanted.x(), record.wanted.y(), 0.0);
+  const Eigen::Vector3d moved = retinaAt(pulse.end).toWorld(wanted) - retinaAt(pulse.newest_frame).toWorld(wanted);
+  record.explained = record.far && moved.head<2>().norm() > kMoved;
   return record;
 }
 

@@ -17,6 +17,7 @@
 #include "eyeslam/retina/pose2.h"
 #include "eyeslam/retina_pose_t.hpp"
 #include "eyeslam/servo_status_t.hpp"
+#include "eyeslam/simulation/retina_pose.h"
 #include "eyeslam/trials/tip_judge.h"
 #include "eyeslam/trials/trial.h"
 #include "eyeslam/trials/trial_record.h"
@@ -47,11 +48,6 @@ class TrialJudge {
   TrialRecord record() const;
 
  private:
-  struct RetinaAt {
-    Eigen::Vector2d centre, shift;
-    double theta = 0.0;
-    Eigen::Vector2d toWorld(const Eigen::Vector2d& place) const;
-  };
   struct Pulse {
     int target = -1;
     std::int64_t number = 0, begin = 0, end = 0, newest_frame = 0;
@@ -78,7 +74,7 @@ class TrialJudge {
   bool counts() const { return counts_from_ != 0 && !over_; }
 
   Eigen::Vector2d ontoRetina(double x_px, double y_px) const;
-  RetinaAt retinaAt(std::int64_t utime) const;
+  const simulation::RetinaPose& retinaAt(std::int64_t utime) const;
   void addPulses(TrialRecord& record) const;
   PulseRecord recordOf(const Pulse& pulse) const;
   void addTargets(TrialRecord& record) const;
@@ -90,7 +86,7 @@ class TrialJudge {
   std::optional<TrialSetting> setting_;
   TrialName name_;
   mark_t start_{};
-  std::int64_t counts_from_ = 0, stopped_ = 0;
+  std::int64_t counts_from_ = 0;
   bool over_ = false, never_began_ = false;
 
   std::optional<TipJudge> tip_judge_;
@@ -98,7 +94,7 @@ class TrialJudge {
   std::vector<double> travelled_;
   std::int64_t saturated_ = 0, truths_ = 0;
   std::int64_t first_truth_ = 0;
-  std::vector<RetinaAt> retina_;  // a millisecond each, from first_truth_ on
+  std::vector<simulation::RetinaPose> retina_;  // a millisecond each, from first_truth_ on
   double um_per_px_ = 0.0;
   std::optional<Eigen::Vector3d> last_tip_, last_world_tip_;
   double fastest_tip_ = 0.0, worst_pivot_ = 0.0;  // m/s, m

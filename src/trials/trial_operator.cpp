@@ -7,6 +7,7 @@
 #include "eyeslam/fixtures/burn_order.h"
 #include "eyeslam/servo/plan_messages.h"
 #include "eyeslam/simulation/eye_camera_options.h"
+#include "eyeslam/trials/lock_step_time.h"
 
 namespace eyeslam::trials {
 
@@ -17,7 +18,6 @@ using messaging::WantedMode;
 namespace {
 
 constexpr std::int64_t kWishPeriods = 50;         // 20 Hz (contracts, section 4)
-constexpr std::int64_t kPlanPeriods = 1000;       // the same
 constexpr double kReady_s = 1.0;                  // then a map is there
 constexpr double kLooks_s = 1.5;                  // at the map, before he chooses
 constexpr std::size_t kIntoPath = 40;             // points of it, some 0.2 mm: there he points at a vessel
@@ -116,10 +116,7 @@ bool TrialOperator::plan(std::int64_t utime)
   retina::VesselMap map = maps_.map();
   map.um_per_px = registrations_.latest()->um_per_px;
   if (!middle || !maps_.isComplete() || !(map.um_per_px > 0.0)) return false;
-  fixtures::BurnPrescription asked = setting_.prescription;
-  if (asked.pattern.centre_px.empty())
-    asked.pattern.centre_px = std::to_string(middle->x()) + " " + std::to_string(middle->y());
-  plan_ = servo::planMessage(fixtures::orderedPlan(map, asked), maps_.mapId());
+  plan_ = servo::planMessage(fixtures::orderedPlan(map, prescriptionAbout(setting_, *middle)), maps_.mapId());
   plan_.state = burn_plan_t::PROPOSED;
   plan_.utime = utime;
   fixture_ = {};
