@@ -11,6 +11,7 @@
 #include "eyeslam/messaging/decoding.h"
 #include "eyeslam/messaging/record_messages.h"
 #include "eyeslam/messaging/retina_messages.h"
+#include "eyeslam/replay/column_name.h"
 #include "eyeslam/replay/device_fields.h"
 #include "eyeslam/replay/record_fields.h"
 #include "eyeslam/replay/servo_fields.h"
@@ -36,18 +37,7 @@ class ColumnNames {
   void add(const FieldName& name)
   {
     if (!line_.empty()) line_ += ',';
-    line_ += name.name;
-    const bool square = !name.unit.empty() && name.unit == name.second_unit;
-    for (const std::string_view part : {name.part, name.second_part, name.unit}) append(part);
-    if (square && name.unit.find('_') == std::string_view::npos) {
-      line_ += '2';
-    } else {
-      append(name.second_unit);
-    }
-  }
-  void append(std::string_view part)
-  {
-    if (!part.empty()) (line_ += '_') += part;
+    line_ += columnName(name);
   }
 
   std::string line_;
