@@ -3,58 +3,108 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <vector>
+
+#include "eyeslam/retina/vector_kernel.h"
 
 namespace eyeslam::simulation {
 
 namespace {
 
-using Colour = Eigen::Array4f;
-using Weights = std::array<float, 4>;
 constexpr int kFarAway_px = 1 << 20;
 
+// Where a row of the view lies along one axis of the canvas: whole pixels, and the weights of the four about each.
+struct RowPlaces {
+  explicit RowPlaces(int columns) : whole(static_cast<std::size_t>(columns))
+  {
+    for (auto& weight : weights) weight.resize(whole.size());
+  }
+  std::vector<int> whole;
+  std::array<std::vector<float>, 4> weights;
+};
+
+// Position along the row, px: constant + linear dx + square dx^2.
+struct RowCurve {
+  double constant, linear, square;
+};
+
 // Catmull-Rom: reproduces straight ramps exactly, so that nothing shifts.
-Weights cubicWeights(float t)
+EYESLAM_VECTOR_KERNEL void locate(const RowCurve& curve, double first_dx, int columns, int* __restrict whole,
+                                  float* __restrict before, float* __restrict at, float* __restrict after,
+                                  float* __restrict beyond)
 {
-  const float u = 1.0F - t;
-  return {-0.5F * t * u * u, 1.0F + t * t * (1.5F * t - 2.5F), 1.0F + u * u * (1.5F * u - 2.5F), -0.5F * u * t * t};
-}
-
-Colour pixelAt(const cv::Mat& canvas, int x, int y) { return Eigen::Map<const Colour>(canvas.ptr<float>(y) + 4 * x); }
-
-Colour sampleInside(const cv::Mat& canvas, int x, int y, const Weights& wx, const Weights& wy)
-{
-  Colour sum = Colour::Zero();
-  for (int j = 0; j < 4; ++j) {
-    const float* row = canvas.ptr<float>(y + j - 1) + 4 * (x - 1);
-    const Colour line = wx[0] * Eigen::Map<const Colour>(row) + wx[1] * Eigen::Map<const Colour>(row + 4) +
-                        wx[2] * Eigen::Map<const Colour>(row + 8) + wx[3] * Eigen::Map<const Colour>(row + 12);
-    sum += wy[static_cast<std::size_t>(j)] * line;
+  for (int i = 0; i < columns; ++i) {
+    const double dx = first_dx + i;
+    const double q = curve.constant + dx * (curve.linear + dx * curve.square);
+    // A floor without a call: views stay within a million px of the canvas.
+    whole[i] = static_cast<int>(q + kFarAway_px) - kFarAway_px;
+    const auto t = static_cast<float>(q - whole[i]);
+    const float u = 1.0F - t;
+    before[i] = -0.5F * t * u * u;
+    at[i] = 1.0F + t * t * (1.5F * t - 2.5F);
+    after[i] = 1.0F + u * u * (1.5F * u - 2.5F);
+    beyond[i] = -0.5F * u * t * t;
   }
-  return sum;
 }
 
-Colour sampleAtBorder(const cv::Mat& canvas, int x, int y, const Weights& wx, const Weights& wy)
+void locate(const RowCurve& curve, double first_dx, RowPlaces& places)
 {
-  Colour sum = Colour::Zero();
+  auto& w = places.weights;
+  locate(curve, first_dx, static_cast<int>(places.whole.size()), places.whole.data(), w[0].data(), w[1].data(),
+         w[2].data(), w[3].data());
+}
+
+// Weights x those 4 x 4 pixels of four colours, the rows at `rows`.
+struct Taps {
+  std::array<const float*, 4> rows;
+  std::array<float, 4> across, down;
+};
+
+inline void addTaps(const Taps& taps, float weight, float* __restrict out)
+{
+  std::array<float, 16> line;
+  for (std::size_t k = 0; k < 16; ++k) {
+    line[k] = taps.down[0] * taps.rows[0][k] + taps.down[1] * taps.rows[1][k] + taps.down[2] * taps.rows[2][k] +
+              taps.down[3] * taps.rows[3][k];
+  }
+  for (std::size_t c = 0; c < 4; ++c) {
+    out[c] += weight * (taps.across[0] * line[c] + taps.across[1] * line[c + 4] + taps.across[2] * line[c + 8] +
+                        taps.across[3] * line[c + 12]);
+  }
+}
+
+// At the canvas's border the pixels beyond it are those on it.
+void addAtBorder(const cv::Mat& canvas, int x, int y, Taps taps, float weight, float* out)
+{
+  std::array<float, 64> pixels;
   for (int j = 0; j < 4; ++j) {
-    for (int i = 0; i < 4; ++i) {
-      const int column = std::clamp(x + i - 1, 0, canvas.cols - 1);
-      const int row = std::clamp(y + j - 1, 0, canvas.rows - 1);
-      sum += wx[static_cast<std::size_t>(i)] * wy[static_cast<std::size_t>(j)] * pixelAt(canvas, column, row);
+    const float* row = canvas.ptr<float>(std::clamp(y + j - 1, 0, canvas.rows - 1));
+    float* copy = pixels.data() + 16 * j;
+    for (int i = 0; i < 4; ++i) std::copy_n(row + 4 * std::clamp(x + i - 1, 0, canvas.cols - 1), 4, copy + 4 * i);
+    taps.rows[static_cast<std::size_t>(j)] = copy;
+  }
+  addTaps(taps, weight, out);
+}
+
+EYESLAM_VECTOR_KERNEL void addRow(const cv::Mat& canvas, const RowPlaces& across, const RowPlaces& down, float weight,
+                                  float* out)
+{
+  const std::size_t step = canvas.step1();
+  for (std::size_t i = 0; i < across.whole.size(); ++i, out += 4) {
+    const int x = across.whole[i], y = down.whole[i];
+    Taps taps;
+    for (std::size_t k = 0; k < 4; ++k) {
+      taps.across[k] = across.weights[k][i];
+      taps.down[k] = down.weights[k][i];
     }
+    if (x < 1 || y < 1 || x >= canvas.cols - 2 || y >= canvas.rows - 2) {
+      addAtBorder(canvas, x, y, taps, weight, out);
+      continue;
+    }
+    const float* row = canvas.ptr<float>(y - 1) + 4 * (x - 1);
+    taps.rows = {row, row + step, row + 2 * step, row + 3 * step};
+    addTaps(taps, weight, out);
   }
-  return sum;
-}
-
-Colour sample(const cv::Mat& canvas, double qx, double qy)
-{
-  // A floor without a call: views stay within a million px of the canvas.
-  const int x = static_cast<int>(qx + kFarAway_px) - kFarAway_px;
-  const int y = static_cast<int>(qy + kFarAway_px) - kFarAway_px;
-  const Weights wx = cubicWeights(static_cast<float>(qx - x));
-  const Weights wy = cubicWeights(static_cast<float>(qy - y));
-  const bool inside = x >= 1 && y >= 1 && x < canvas.cols - 2 && y < canvas.rows - 2;
-  return inside ? sampleInside(canvas, x, y, wx, wy) : sampleAtBorder(canvas, x, y, wx, wy);
 }
 
 }  // namespace
@@ -67,17 +117,12 @@ void accumulateView(const cv::Mat& canvas, const ViewMapping& mapping, float wei
   const Eigen::Vector2d origin(mapping.map_origin.x, mapping.map_origin.y);
   const Eigen::Vector2d offset = centre + mapping.map_T_frame.translation() - origin;
   const auto& w = mapping.warp;
+  RowPlaces across(view.cols), down(view.cols);
   for (int row = 0; row < view.rows; ++row) {
-    float* out = view.ptr<float>(row);
     const double dy = row - centre.y();
-    for (int column = 0; column < view.cols; ++column, out += 4) {
-      const double dx = column - centre.x();
-      const double qx =
-          offset.x() + linear(0, 0) * dx + linear(0, 1) * dy + w[0] * dx * dx + w[1] * dx * dy + w[2] * dy * dy;
-      const double qy =
-          offset.y() + linear(1, 0) * dx + linear(1, 1) * dy + w[3] * dx * dx + w[4] * dx * dy + w[5] * dy * dy;
-      Eigen::Map<Colour>(out) += weight * sample(canvas, qx, qy);
-    }
+    locate({offset.x() + linear(0, 1) * dy + w[2] * dy * dy, linear(0, 0) + w[1] * dy, w[0]}, -centre.x(), across);
+    locate({offset.y() + linear(1, 1) * dy + w[5] * dy * dy, linear(1, 0) + w[4] * dy, w[3]}, -centre.x(), down);
+    addRow(canvas, across, down, weight, view.ptr<float>(row));
   }
 }
 

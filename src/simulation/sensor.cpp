@@ -4,11 +4,31 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/retina/vector_kernel.h"
+
 namespace eyeslam::simulation {
 
 namespace {
 
 constexpr std::size_t kTable = 1U << 17;
+constexpr float kWhite = 255.0F;
+
+// Of BGRx to BGR: in steps, so that the compiler's vectors take several values at once.
+EYESLAM_VECTOR_KERNEL void dropFourth(const float* in, int pixels, float black, float* __restrict level)
+{
+  for (int i = 0; i < pixels; ++i) {
+    for (int c = 0; c < 3; ++c) level[3 * i + c] = std::clamp(black + kWhite * in[4 * i + c], 0.0F, kWhite);
+  }
+}
+
+EYESLAM_VECTOR_KERNEL void addNoise(const float* level, const float* noise, const float* deviation, int values,
+                                    std::uint8_t* __restrict out)
+{
+  for (int i = 0; i < values; ++i) {
+    const float noisy = level[i] + deviation[static_cast<int>(level[i])] * noise[i];
+    out[i] = static_cast<std::uint8_t>(static_cast<int>(std::clamp(noisy + 0.5F, 0.0F, kWhite)));
+  }
+}
 
 }  // namespace
 
@@ -24,21 +44,20 @@ void Sensor::read(const cv::Mat& light, cv::Mat_<cv::Vec3b>& picture)
 {
   CV_Assert(light.type() == CV_32FC4);
   picture.create(light.size());
-  const std::size_t row_length = 3 * static_cast<std::size_t>(light.cols);
-  const auto black = static_cast<float>(options_.black);
+  const int values = 3 * light.cols;
+  levels_.resize(static_cast<std::size_t>(values));
+  repeatTable(kTable + levels_.size());
   for (int y = 0; y < light.rows; ++y) {
-    const float* in = light.ptr<float>(y);
-    std::uint8_t* out = picture.ptr<std::uint8_t>(y);
-    std::size_t place = static_cast<std::size_t>(random_.bits()) % kTable;
-    for (std::size_t i = 0; i < row_length; i += 3, in += 4) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        const float level = std::clamp(black + 255.0F * in[c], 0.0F, 255.0F);
-        const float noisy = level + deviation_[static_cast<std::size_t>(level)] * table_[(place + c) & (kTable - 1)];
-        out[i + c] = static_cast<std::uint8_t>(std::clamp(noisy + 0.5F, 0.0F, 255.0F));
-      }
-      place += 3;
-    }
+    dropFourth(light.ptr<float>(y), light.cols, static_cast<float>(options_.black), levels_.data());
+    const std::size_t place = static_cast<std::size_t>(random_.bits()) % kTable;
+    addNoise(levels_.data(), table_.data() + place, deviation_.data(), values, picture.ptr<std::uint8_t>(y));
   }
+}
+
+// Its beginning again behind its end: a row of the picture never wraps.
+void Sensor::repeatTable(std::size_t length)
+{
+  while (table_.size() < length) table_.push_back(table_[table_.size() - kTable]);
 }
 
 }  // namespace eyeslam::simulation

@@ -37,10 +37,13 @@ class Sensor {
   void read(const cv::Mat& light, cv::Mat_<cv::Vec3b>& picture);
 
  private:
+  void repeatTable(std::size_t length);
+
   SensorOptions options_;
   Random random_;
   std::vector<float> table_;      // normal numbers; each row begins at a place of its own
   std::vector<float> deviation_;  // by grey level
+  std::vector<float> levels_;     // of one row
 };
 
 }  // namespace eyeslam::simulation

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "eyeslam/tracking/vector_kernel.h"
+#include "eyeslam/retina/vector_kernel.h"
 
 namespace eyeslam::tracking {
 

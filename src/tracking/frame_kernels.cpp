@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "eyeslam/retina/vector_kernel.h"
 #include "eyeslam/tracking/frame.h"
-#include "eyeslam/tracking/vector_kernel.h"
 
 namespace eyeslam::tracking::kernels {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "eyeslam/tracking/vector_kernel.h"
+#include "eyeslam/retina/vector_kernel.h"
 
 namespace eyeslam::tracking {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "eyeslam/retina/vector_kernel.h"
 #include "eyeslam/tracking/cubic_sampler.h"
-#include "eyeslam/tracking/vector_kernel.h"
 
 namespace eyeslam::tracking {
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "eyeslam/retina/vector_kernel.h"
 #include "eyeslam/tracking/frame_kernels.h"
-#include "eyeslam/tracking/vector_kernel.h"
 
 namespace eyeslam::tracking {
 

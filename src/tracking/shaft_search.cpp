@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "eyeslam/tracking/vector_kernel.h"
+#include "eyeslam/retina/vector_kernel.h"
 
 namespace eyeslam::tracking {
 

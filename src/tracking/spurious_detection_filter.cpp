@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/retina/vector_kernel.h"
 #include "eyeslam/tracking/cell_growth.h"
-#include "eyeslam/tracking/vector_kernel.h"
 
 namespace eyeslam::tracking {
 

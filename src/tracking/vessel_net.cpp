@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "eyeslam/tracking/vector_kernel.h"
+#include "eyeslam/retina/vector_kernel.h"
 #include "eyeslam/tracking/vessel_net_weights.h"
 
 namespace eyeslam::tracking {
