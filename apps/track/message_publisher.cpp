@@ -11,7 +11,6 @@
 namespace eyeslam::apps {
 namespace {
 
-constexpr double kMicroseconds = 1e6;  // a second
 constexpr const char* kProgram = "eyeslam-track";
 
 std::optional<messaging::Key> keyIn(const std::string& file)
@@ -25,9 +24,7 @@ std::optional<messaging::Key> keyIn(const std::string& file)
 MessagePublisher::MessagePublisher(const std::string& url, const std::string& key_file, double um_per_px,
                                    double frame_rate, const std::string& configuration,
                                    const std::string& configuration_hash)
-    : link_(url, newSession(), keyIn(key_file)),
-      vision_(link_, um_per_px, frame_rate),
-      period_us_(kMicroseconds / frame_rate)
+    : link_(url, newSession(), keyIn(key_file)), vision_(link_, um_per_px, frame_rate), frame_rate_(frame_rate)
 {
   sendMark(marks_, mark_t::START, kProgram, {configuration, configuration_hash});
 }
@@ -36,19 +33,8 @@ void MessagePublisher::onRead(const files::VideoFrame& frame)
 {
   const messaging::ReceiveTime now = receiveTime();
   link_.drain(now);
-  followFrameRate(frame);
+  vision_.setFrameRate(frame_rate_.follow(frame.utime));
   stamp_ = {frame.utime > 0 ? frame.utime : now.utime, frame.number, frame.exposure};
-}
-
-// The tracker's velocity is one per frame that it was given, and a live source leaves frames out.
-void MessagePublisher::followFrameRate(const files::VideoFrame& frame)
-{
-  constexpr double kShare = 0.2;  // of the newest: as long a memory as the tracker's filter has
-  if (frame.utime > last_utime_ && last_utime_ > 0) {
-    period_us_ += kShare * (static_cast<double>(frame.utime - last_utime_) - period_us_);
-    vision_.setFrameRate(kMicroseconds / period_us_);
-  }
-  last_utime_ = frame.utime;
 }
 
 // What the loop waits for goes out before the map is worked on.

@@ -6,6 +6,7 @@
 
 #include "eyeslam/mark_t.hpp"
 #include "eyeslam/messaging/link.h"
+#include "eyeslam/vision/frame_rate.h"
 #include "eyeslam/vision/vision_publisher.h"
 #include "track/frame_observer.h"
 
@@ -34,14 +35,11 @@ class MessagePublisher : public FrameObserver {
   void finish() override;
 
  private:
-  void followFrameRate(const files::VideoFrame& frame);
-
   messaging::Link link_;
   messaging::Publisher<mark_t> marks_{link_};
   vision::VisionPublisher vision_;
+  vision::FrameRate frame_rate_;
   messaging::FrameStamp stamp_;  // of the frame that was read last
-  std::int64_t last_utime_ = 0;  // of the last frame that bore its own time
-  double period_us_;             // mean of the frames that bear their own time
 };
 
 }  // namespace eyeslam::apps

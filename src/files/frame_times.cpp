@@ -21,7 +21,9 @@ double FrameTimes::next(double position_ms)
     return 0.0;
   }
   const double time = position - first_;
-  last_ = std::isfinite(time) && time > last_ ? time : last_ + period_;
+  const bool later = std::isfinite(time) && time > last_;
+  if (!later) ++repaired_;
+  last_ = later ? time : last_ + period_;
   return last_;
 }
 

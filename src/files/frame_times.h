@@ -17,12 +17,14 @@ class FrameTimes {
   /// @param position_ms  as reported after reading the frame
   /// @return time of the frame, s since the first one
   double next(double position_ms);
+  /// Frames so far whose position was no time after the frame before.
+  std::int64_t repaired() const { return repaired_; }
 
  private:
   double period_;
   double first_ = 0.0;
   double last_ = 0.0;
-  std::int64_t count_ = 0;
+  std::int64_t count_ = 0, repaired_ = 0;
 };
 
 }  // namespace eyeslam::files

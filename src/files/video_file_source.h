@@ -18,6 +18,7 @@ class VideoFileSource : public VideoSource {
   void skipTo(std::int64_t first) override;
   std::optional<std::int64_t> announcedFrames() const override;
   double framesPerSecond() const override { return rate_; }
+  std::int64_t timesRepaired() const override { return times_.repaired(); }
   std::vector<std::string> paths() const override { return {path_}; }
 
  private:

@@ -43,6 +43,8 @@ class VideoSource {
   virtual bool isLive() const { return false; }
   /// Frames that came and went because the next one was there when they were asked for.
   virtual std::int64_t framesLeftOut() const { return 0; }
+  /// Frames whose own time was none, or not after that of the frame before; `t` holds what was taken instead.
+  virtual std::int64_t timesRepaired() const { return 0; }
   /// The files behind the source, for their hash; none for a camera.
   virtual std::vector<std::string> paths() const { return {}; }
   /// What was converted or looks doubtful, one line each; grows while reading.

@@ -26,8 +26,7 @@ LockStepVision::LockStepVision(const LockStepVisionOptions& options, const simul
     : latency_low_(1e3 * options.latency_low_ms),
       latency_high_(1e3 * options.latency_high_ms),
       camera_(camera, fundus, seed),
-      tracker_(options.tracker),
-      publisher_(link, 0.0, camera.fps),
+      tracker_(options.tracker, link, 0.0, camera.fps),
       random_(seed, kStream)
 {}
 
@@ -36,28 +35,13 @@ const TrackedView& LockStepVision::look(const simulation::FrameDue& due)
   const simulation::RenderedFrame frame = camera_.render(due);
   image_ = frame.image;
   obstruct(obstruction_, image_);
-  const tracking::TrackResult& result = live_.track(tracker_, image_);
-  const bool frozen = result.reason == retina::Reason::frozen;  // nothing was seen
   const auto latency = std::llround(random_.uniform(latency_low_, latency_high_));
-  waiting_.push_back({due.utime + latency,
-                      {due.utime, due.frame, due.exposure},
-                      result,
-                      frozen ? tracking::ToolTip() : tracker_.getToolTip(),
-                      frozen ? tracking::AimingSpot() : tracker_.getAimingSpot()});
+  const tracking::TrackResult& result =
+      tracker_.look(image_, {due.utime, due.frame, due.exposure}, due.utime + latency).result;
   newest_ = {due.t_s, result.tracked, result.reason, result.map_T_frame, frame.map_T_frame};
-  if (!frozen) tracker_.updateMap();
   return newest_;
 }
 
-void LockStepVision::step(const messaging::ReceiveTime& now)
-{
-  while (!waiting_.empty() && waiting_.front().ready <= now.utime) {
-    const Waiting& ready = waiting_.front();
-    publisher_.publishPose(ready.stamp, ready.result, tracker_.getVesselMap().version, now.utime);
-    publisher_.publishInstrument(ready.stamp, ready.tip, ready.spot, now.utime);
-    publisher_.publishTiles(ready.stamp, tracker_.getVesselMap(), now.utime);
-    waiting_.pop_front();
-  }
-}
+void LockStepVision::step(const messaging::ReceiveTime& now) { tracker_.send(now.utime); }
 
 }  // namespace eyeslam::trials

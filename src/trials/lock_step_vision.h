@@ -2,16 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
-#include <optional>
 
 #include "eyeslam/messaging/link.h"
 #include "eyeslam/retina/pose2.h"
 #include "eyeslam/simulation/eye_camera.h"
 #include "eyeslam/simulation/random.h"
 #include "eyeslam/tracking/eyeslam_tracker.h"
-#include "eyeslam/vision/frozen_picture.h"
-#include "eyeslam/vision/vision_publisher.h"
+#include "eyeslam/vision/lock_step_tracker.h"
 
 namespace eyeslam::trials {
 
@@ -64,27 +61,16 @@ class LockStepVision {
 
   /// The newest frame.
   const TrackedView& newest() const { return newest_; }
-  const tracking::EyeSlamTracker& tracker() const { return tracker_; }
+  const tracking::EyeSlamTracker& tracker() const { return tracker_.tracker(); }
   const simulation::EyeCamera& camera() const { return camera_; }
   /// The newest picture.
   const cv::Mat& image() const { return image_; }
 
  private:
-  struct Waiting {
-    std::int64_t ready = 0;  // us since 1970
-    messaging::FrameStamp stamp;
-    tracking::TrackResult result;
-    tracking::ToolTip tip;
-    tracking::AimingSpot spot;
-  };
-
   double latency_low_, latency_high_;  // us
   simulation::EyeCamera camera_;
-  tracking::EyeSlamTracker tracker_;
-  vision::FrozenPicture live_;
-  vision::VisionPublisher publisher_;
+  vision::LockStepTracker tracker_;
   simulation::Random random_;
-  std::deque<Waiting> waiting_;
   TrackedView newest_;
   Obstruction obstruction_ = Obstruction::none;
   cv::Mat image_;
