@@ -29,7 +29,7 @@ std::int64_t endOf(const messaging::FrameStamp& stamp) { return stamp.utime + st
 template <class Message>
 std::optional<messaging::FrameStamp> stampIn(const std::vector<std::uint8_t>& bytes)
 {
-  Message message;
+  Message message{};
   if (!messaging::decode(bytes.data(), bytes.size(), message)) return std::nullopt;
   return messaging::FrameStamp{message.utime, message.frame, message.exposure};
 }

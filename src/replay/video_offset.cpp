@@ -84,7 +84,7 @@ void VideoOffset::take(const SortedEvent& event)
 
 void VideoOffset::takePose(const SortedEvent& event)
 {
-  retina_pose_t pose;
+  retina_pose_t pose{};
   if (!messaging::decode(event.event.data, event.event.size, pose)) return;
   if (session_ == 0) session_ = pose.session;
   const double t_s = 1e-6 * static_cast<double>(pose.utime - start_);
@@ -96,7 +96,7 @@ void VideoOffset::takePose(const SortedEvent& event)
 
 void VideoOffset::takeState(const SortedEvent& event)
 {
-  micron_state_t state;
+  micron_state_t state{};
   const double t_s = 1e-6 * static_cast<double>(event.since_us);
   if (!tip_.places.empty() && t_s < tip_.places.back().t_s + kStates_s) return;
   if (!messaging::decode(event.event.data, event.event.size, state)) return;
