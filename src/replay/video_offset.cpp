@@ -183,7 +183,11 @@ std::optional<OffsetEstimate> VideoOffset::estimate() const
     const Fit tried = at(lag);
     if (tried.steps >= enough) found[static_cast<std::size_t>(lag + farthest)] = tried.correlation;
   }
-  const int best = static_cast<int>(std::max_element(found.begin(), found.end()) - found.begin()) - farthest;
+  double best = static_cast<double>(std::max_element(found.begin(), found.end()) - found.begin()) - farthest;
+  const double whole = best;
+  // Places that are denser than frames tell where between two frames the best offset is.
+  for (int tenth = -9; moved != &poses_ && tenth <= 9; ++tenth)
+    if (at(whole + 0.1 * tenth).correlation > at(best).correlation) best = whole + 0.1 * tenth;
   const Fit peak = at(best);
   if (peak.correlation <= 0.0) return std::nullopt;
   const Top top = topOf(at(best - 1).correlation, peak.correlation, at(best + 1).correlation);
