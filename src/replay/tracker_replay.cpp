@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include "eyeslam/messaging/decoding.h"
@@ -241,7 +242,6 @@ void TrackerReplay::hear(const messaging::TappedEvent& event)
 void TrackerReplay::compare(const Held& held)
 {
   Channel& channel = channels_.find(held.channel)->second;
-  const bool counts = held.sorted.since_us >= options_.from_us;
   const files::LogEvent recorded = held.event().event;
   const auto eventOf = [&](const Computed& computed) {
     return files::LogEvent{computed.number, recorded.utime, held.channel, computed.bytes.data(), computed.bytes.size()};
@@ -249,15 +249,15 @@ void TrackerReplay::compare(const Held& held)
   std::deque<Computed>& computed = channel.computed;
   for (; !computed.empty() && computed.front().number < held.header.seq; computed.pop_front()) {
     const bool was_lost = options_.order == TrackerOrder::live;  // loggers lose messages
-    if (counts && channel.begun && !was_lost) comparison_.extra(eventOf(computed.front()));
+    if (channel.begun && !was_lost) comparison_.extra(eventOf(computed.front()));
   }
   channel.begun = true;
   if (computed.empty() || computed.front().number != held.header.seq) {
-    if (counts) comparison_.missing(recorded);
+    comparison_.missing(recorded);
     return;
   }
   align(held, computed.front().bytes);
-  if (counts) comparison_.compare(recorded, eventOf(computed.front()));
+  comparison_.compare(recorded, eventOf(computed.front()));
   computed.pop_front();
 }
 

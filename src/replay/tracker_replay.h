@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -29,8 +28,6 @@ struct TrackerReplayOptions {
   tracking::TrackerOptions tracker;
   double frame_rate = 30.0;  ///< nominal, 1/s
   TrackerOrder order = TrackerOrder::lock_step;
-  std::int64_t from_us = std::numeric_limits<std::int64_t>::min();  ///< since the log's first event: what is earlier is
-                                                                    ///< computed, but not compared
 };
 
 /// What is worth saying besides the comparison.

@@ -37,6 +37,9 @@ struct OffsetEstimate {
 /// event on, where there are no poses.
 class VideoOffset {
  public:
+  /// Beyond which no picture is looked at where no pose tells where it belongs.
+  static constexpr std::int64_t kMostPictures = 2400;
+
   /// @param shift  as of SideVideo
   explicit VideoOffset(double frames_per_second, std::int64_t shift = 0);
 
