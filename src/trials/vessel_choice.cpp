@@ -18,6 +18,8 @@ constexpr double kStraight = 0.77;  // cosine: 40 deg between what lies before a
 constexpr double kLook_px = 15.0;   // over which a way's direction is taken
 constexpr double kWidest = 2.5;     // of the least radius: no vessel of an eye is wider (facts, D4)
 constexpr double kEven = 1.4;       // of a vessel's median radius
+constexpr double kWider = 1.3;      // of a way's radius: not the way's own next stretch
+constexpr double kBends = 3.0;      // radii from a wider vessel's edge; source: maps of rendered frames, by eye
 constexpr std::size_t kStride = 5;  // points: crowding is no finer
 constexpr double kCrowded = 1.5;    // times its length that a wholly crowded way loses
 
@@ -54,25 +56,58 @@ bool isSmoothAt(const Way& way, std::size_t i)
   return (way[i] - way[i - look]).normalized().dot((way[i + look] - way[i]).normalized()) >= kStraight;
 }
 
-// A smooth run within the area, far enough from the ends of its way.
+// Where a wider vessel lies across the way, or so near to it that a map bends the way into it.
+std::vector<bool> crossings(const Way& way, double radius_px, const fixtures::VesselNetwork& network)
+{
+  std::vector<bool> crossed(way.size());
+  const double near_px = kBends * radius_px;
+  const double near_sq = near_px * near_px;
+  for (const Vessel& vessel : network.vessels) {
+    if (radiusAt(vessel, 0.5) < kWider * radius_px) continue;
+    for (std::size_t i = 0; i < vessel.points.size(); i += kStride) {
+      const fixtures::CenterlinePoint& other = vessel.points[i];
+      const double reach_sq = near_sq + other.radius_px * (2.0 * near_px + other.radius_px);
+      for (std::size_t k = 0; k < way.size(); k += kStride)
+        if ((way[k] - other.position_px).squaredNorm() < reach_sq) crossed[k] = true;
+    }
+  }
+  for (std::size_t k = 0; k < way.size(); ++k) crossed[k] = crossed[k / kStride * kStride];
+  return crossed;
+}
+
+// Where for `beyond_px` both ways nothing is in the way: no bend, no wider vessel, no place to keep away from.
+std::vector<bool> freeBothWays(const Way& way, double radius_px, const fixtures::VesselNetwork& network,
+                               const VesselWish& wish)
+{
+  const auto beyond = static_cast<std::size_t>(wish.beyond_px);  // points are a px apart
+  const std::vector<bool> crossed = crossings(way, radius_px, network);
+  std::vector<bool> result(way.size());
+  std::size_t free = 0;  // of the points before, without a gap
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    const bool blocked = crossed[i] || !isSmoothAt(way, i) || (wish.excluded && wish.excluded(way[i]));
+    free = blocked ? 0 : free + 1;
+    if (free > 2 * beyond) result[i - beyond] = true;
+  }
+  return result;
+}
+
+// A run within the area that is free both ways.
 struct Run {
   std::size_t way = 0, first = 0, count = 0;
   double length = 0.0;
 };
 
-void addRuns(const Way& way, std::size_t number, const VesselWish& wish, std::vector<Run>& runs)
+void addRuns(const Way& way, std::size_t number, const std::vector<bool>& free, const VesselWish& wish,
+             std::vector<Run>& runs)
 {
-  const auto beyond = static_cast<std::size_t>(wish.beyond_px);  // points are a px apart
-  Run run{number, beyond};
+  Run run{number};
   const auto end = [&](std::size_t next) {
     if (run.count > 1) runs.push_back(run);
     run = {number, next};
   };
-  for (std::size_t i = beyond; i + beyond < way.size(); ++i) {
+  for (std::size_t i = 0; i < way.size(); ++i) {
     const double step = run.count > 0 ? (way[i] - way[i - 1]).norm() : 0.0;
-    const bool good = wish.area_px.contains(way[i]) && isSmoothAt(way, i) && run.length + step <= wish.longest_px &&
-                      !(wish.excluded && wish.excluded(way[i]));
-    if (!good) {
+    if (!free[i] || !wish.area_px.contains(way[i]) || run.length + step > wish.longest_px) {
       end(i + 1);
       continue;
     }
@@ -113,7 +148,8 @@ ChosenVessel vesselToTrace(const fixtures::VesselNetwork& network, const VesselW
   std::vector<Run> runs;
   for (std::size_t first = 0; first < clear.vessels.size(); ++first) {
     ways.push_back(fixtures::walk(clear, first, kFar_px, fixtures::straightest));
-    addRuns(ways.back(), first, wish, runs);
+    const double radius = radiusAt(clear.vessels[first], 0.5);
+    addRuns(ways.back(), first, freeBothWays(ways.back(), radius, network, wish), wish, runs);
   }
   // Crowding only shortens, and takes longer to find out.
   std::stable_sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.length > b.length; });

@@ -19,7 +19,7 @@ struct VesselWish {
   double radius_px = 0.0;                                ///< median of a vessel that is wide enough
   double apart_px = 0.0;                                 ///< nearer to another vessel than this is crowded
   std::function<bool(const Eigen::Vector2d&)> excluded;  ///< places that it keeps away from; none: nowhere
-  double beyond_px = 0.0;                                ///< for so far the vessel must go on beyond both ends
+  double beyond_px = 0.0;  ///< for so far the vessel must go on beyond both ends, uncrossed by a wider one
 };
 
 /// A stretch of a vessel.

@@ -127,6 +127,26 @@ TEST(VesselChoice, GoesStraightOnThroughAJunction)
   for (const Vector2d& place : chosen.centreline) EXPECT_NEAR(place.y(), 500.0, 1e-9);
 }
 
+TEST(VesselChoice, EndsFarFromAWiderVesselAcrossItsWay)
+{
+  for (const double crossing : {700.0, 1900.0}) {  // the second is elsewhere
+    const std::vector<Vessel> vessels{wide(1, {{100, 400}, {1100, 400}}),
+                                      wide(2, {{crossing, 0}, {crossing, 800}}, {-1, -1}, 13.0)};
+    const std::vector<Vector2d> way = traced(vesselToTrace(networkOf(vessels), wish()));
+    ASSERT_GT(way.size(), 100U);
+    const double end = std::max(way.front().x(), way.back().x());
+    EXPECT_NEAR(end, crossing < 1100.0 ? 700.0 - 13.0 - 3.0 * 6.0 - kBeyond : 1100.0 - kBeyond, 8.0);
+  }
+}
+
+TEST(VesselChoice, EndsFarFromABend)
+{
+  const std::vector<Vector2d> way =
+      traced(vesselToTrace(networkOf({wide(1, {{100, 200}, {900, 200}, {900, 300}})}), wish()));
+  ASSERT_GT(way.size(), 100U);
+  for (const Vector2d& place : way) EXPECT_LT(place.x(), 900.0 - kBeyond + 1.0) << place.transpose();
+}
+
 TEST(VesselChoice, StaysWithinItsArea)
 {
   VesselWish small = wish();
