@@ -36,17 +36,17 @@ void addOptions(CLI::App& app, ServoArguments& a)
   addStandardOptions(app, kExamples);
 }
 
-ServoConfiguration configurationOf(const ServoArguments& arguments)
+servo::ServoConfiguration configurationOf(const ServoArguments& arguments)
 {
   std::vector<configuration::Assignment> assignments;
   if (!arguments.config.empty()) assignments = configuration::readYaml(arguments.config);
   for (const std::string& setting : arguments.settings) assignments.push_back(configuration::parseSetting(setting));
-  return configuration::applied(ServoConfiguration{}, assignments);
+  return configuration::applied(servo::ServoConfiguration{}, assignments);
 }
 
 void dump(const ServoArguments& arguments)
 {
-  const ServoConfiguration options = configurationOf(arguments);
+  const servo::ServoConfiguration options = configurationOf(arguments);
   if (arguments.dump == "yaml") {
     fmt::print("{}", configuration::yamlOf(options));
   } else if (arguments.dump == "markdown") {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "eyeslam/servo/servo_configuration.h"
 #include "link/program_link.h"
-#include "servo/servo_configuration.h"
 
 namespace eyeslam::apps {
 
@@ -24,7 +24,7 @@ struct ServoArguments {
 void addOptions(CLI::App& app, ServoArguments& arguments);
 
 /// All options: defaults, then `--config`, then `--set`. @throws ConfigurationError
-ServoConfiguration configurationOf(const ServoArguments& arguments);
+servo::ServoConfiguration configurationOf(const ServoArguments& arguments);
 
 /// Prints the options. @throws UsageError
 void dump(const ServoArguments& arguments);

@@ -10,7 +10,7 @@
 
 namespace eyeslam::apps {
 
-ServoDesk::ServoDesk(const ServoConfiguration& options, messaging::Link& link, ServoExchanges& exchanges,
+ServoDesk::ServoDesk(const servo::ServoConfiguration& options, messaging::Link& link, ServoExchanges& exchanges,
                      Answers answers)
     : options_(options),
       exchanges_(exchanges),
@@ -21,10 +21,8 @@ ServoDesk::ServoDesk(const ServoConfiguration& options, messaging::Link& link, S
 
 bool ServoDesk::resume(const messaging::PublishedRegistration& published)
 {
-  auto result = std::make_shared<servo::CalibrationResult>();
-  result->camera = servo::resumed(published, options_.servo.registration.camera);
-  result->plane = servo::planeOf(published);
-  result->reason = result->camera.result().reason;
+  auto result =
+      std::make_shared<servo::CalibrationResult>(servo::calibrationOf(published, options_.servo.registration.camera));
   if (!result->good()) return false;
   exchanges_.calibrations.offer(std::move(result));
   return true;

@@ -9,7 +9,7 @@
 #include "eyeslam/messaging/record_messages.h"
 #include "eyeslam/messaging/servo_messages.h"
 #include "eyeslam/servo/preparation.h"
-#include "servo/servo_configuration.h"
+#include "eyeslam/servo/servo_configuration.h"
 #include "servo/servo_exchanges.h"
 
 namespace eyeslam::apps {
@@ -24,7 +24,8 @@ class ServoDesk {
   };
 
   /// @param link  its own: whole maps and plans come on it
-  ServoDesk(const ServoConfiguration& options, messaging::Link& link, ServoExchanges& exchanges, Answers answers);
+  ServoDesk(const servo::ServoConfiguration& options, messaging::Link& link, ServoExchanges& exchanges,
+            Answers answers);
 
   /// The loop goes on from an earlier calibration. @return whether it is good enough
   bool resume(const messaging::PublishedRegistration& published);
@@ -37,7 +38,7 @@ class ServoDesk {
   void tell(const servo::CalibrationResult& result, std::int64_t utime);
   void publishPlan(std::int64_t utime);
 
-  ServoConfiguration options_;
+  servo::ServoConfiguration options_;
   ServoExchanges& exchanges_;
   Answers answers_;
   servo::PreparationDesk preparation_;

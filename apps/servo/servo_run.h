@@ -36,7 +36,7 @@ class ServoRun {
   void say(const std::string& line) const;
 
   const ServoArguments& arguments_;
-  const ServoConfiguration options_;
+  const servo::ServoConfiguration options_;
   Interruption interruption_;     // before any thread
   messaging::Link loop_link_;     // messages of fixed size only
   messaging::Link patient_link_;  // maps and plans

@@ -160,4 +160,14 @@ std::optional<RetinaPlane> planeOf(const messaging::PublishedRegistration& publi
   return RetinaPlane{published.plane.normal, published.plane.offset, published.plane.residual};
 }
 
+CalibrationResult calibrationOf(const messaging::PublishedRegistration& published,
+                                const CameraRegistrationOptions& options)
+{
+  CalibrationResult result;
+  result.camera = resumed(published, options);
+  result.plane = planeOf(published);
+  result.reason = result.camera.result().reason;
+  return result;
+}
+
 }  // namespace eyeslam::servo

@@ -107,5 +107,8 @@ class RegistrationDesk {
 CameraRegistration resumed(const messaging::PublishedRegistration& published,
                            const CameraRegistrationOptions& options = {});
 std::optional<RetinaPlane> planeOf(const messaging::PublishedRegistration& published);
+/// Both, as if a calibration had just brought them.
+CalibrationResult calibrationOf(const messaging::PublishedRegistration& published,
+                                const CameraRegistrationOptions& options = {});
 
 }  // namespace eyeslam::servo

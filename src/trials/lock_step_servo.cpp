@@ -1,22 +1,45 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "eyeslam/trials/lock_step_servo.h"
 
+#include "eyeslam/servo/registration_desk.h"
+#include "eyeslam/simulation/hardware.h"
+
 namespace eyeslam::trials {
 
 namespace {
 
 constexpr std::int64_t kPreparationPeriods = 100;  // as often as a background thread would look
 
+// The retina at rest, for a calibration in which the aiming beam was not seen: as a second view would give it.
+servo::RetinaPlane planeAtRest(const simulation::PlacementOptions& placement)
+{
+  const Eigen::Isometry3d manipulator_T_world = simulation::manipulatorTWorld(placement);
+  const Eigen::Vector3d normal = manipulator_T_world.linear() * -Eigen::Vector3d::UnitZ();
+  return {normal, normal.dot(manipulator_T_world.translation()), 0.0};
+}
+
 }  // namespace
 
-LockStepServo::LockStepServo(const Options& options, const std::optional<servo::RetinaPlane>& plane,
-                             messaging::Link& link)
-    : calibration_(options.calibration),
+LockStepServo::LockStepServo(const servo::ServoConfiguration& configuration,
+                             const std::optional<servo::RetinaPlane>& plane, messaging::Link& link)
+    : configuration_(configuration),
       plane_(plane),
-      desk_(options.preparation, link),
-      servo_(options.servo, link),
+      desk_(configuration.preparation, link),
+      servo_(configuration.servo, link),
       plans_(link)
 {}
+
+LockStepServo::LockStepServo(const TrialSetting& setting, messaging::Link& link)
+    : LockStepServo({setting.servo, setting.preparation, setting.calibration}, planeAtRest(setting.hardware.placement),
+                    link)
+{}
+
+bool LockStepServo::resume(const messaging::PublishedRegistration& known, std::int64_t utime)
+{
+  const servo::CalibrationResult result = servo::calibrationOf(known, configuration_.servo.registration.camera);
+  if (result.good()) servo_.adopt(result, utime);
+  return result.good();
+}
 
 void LockStepServo::cycle(const messaging::ReceiveTime& now)
 {
@@ -30,7 +53,7 @@ void LockStepServo::prepare(const messaging::ReceiveTime& now)
   if (desk_.work(now)) servo_.adopt(desk_.newest());
   const servo::CalibrationSamples* samples = servo_.samples();
   if (!samples) return;
-  servo::CalibrationResult found = servo::evaluate(*samples, calibration_);
+  servo::CalibrationResult found = servo::evaluate(*samples, configuration_.calibration);
   servo_.samplesTaken();
   swept_plane_ = found.plane.has_value();
   if (!found.plane) found.plane = plane_;

@@ -20,19 +20,6 @@ constexpr double kAfterwards_s = 0.3;  // that a log shows of what comes after t
 
 std::int64_t sessionOf(const TrialName& name) { return static_cast<std::int64_t>(name.seed) + 1; }
 
-// The retina at rest, for a calibration in which the aiming beam was not seen: as a second view would give it.
-servo::RetinaPlane planeAtRest(const simulation::PlacementOptions& placement)
-{
-  const Eigen::Isometry3d manipulator_T_world = simulation::manipulatorTWorld(placement);
-  const Eigen::Vector3d normal = manipulator_T_world.linear() * -Eigen::Vector3d::UnitZ();
-  return {normal, normal.dot(manipulator_T_world.translation()), 0.0};
-}
-
-LockStepServo::Options servoOptions(const TrialSetting& setting)
-{
-  return {setting.servo, setting.preparation, setting.calibration};
-}
-
 }  // namespace
 
 std::string TrialName::json() const
@@ -71,7 +58,7 @@ Trial::Trial(const TrialSetting& setting, const TrialName& name, const std::stri
 {
   if (needsVision()) {
     vision_.emplace(setting.vision, scene.camera(), scene.fundus(), link_, name.seed);
-    servo_.emplace(servoOptions(setting), planeAtRest(setting.hardware.placement), link_);
+    servo_.emplace(setting, link_);
     operator_.emplace(setting, scene, link_);
   } else {
     hardware_.inject(simulation::HardwareFault::power_off);  // the bare hand

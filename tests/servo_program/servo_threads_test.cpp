@@ -120,7 +120,7 @@ class Vision {
 TEST(ServoThreads, RunBesideEachOtherUntilTheControllerHasTheTip)
 {
   if (!canMulticast()) GTEST_SKIP() << "no multicast route here";
-  ServoConfiguration options;
+  servo::ServoConfiguration options;
   options.preparation.period_ms = 50.0;  // prepare often
   Link loop_link(url(), 5, {}), patient_link(url(), 5, {});
   ServoExchanges exchanges;

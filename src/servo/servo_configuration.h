@@ -5,21 +5,22 @@
 #include "eyeslam/servo/preparation.h"
 #include "eyeslam/servo/servo_options.h"
 
-namespace eyeslam::apps {
+namespace eyeslam::servo {
 
-/// Every option of `eyeslam-servo`: the loop's own groups, and what is prepared beside it.
+/// Every option of `eyeslam-servo`: the loop's own groups, and what is prepared beside it. As YAML it stands in the
+/// program's MARK.
 struct ServoConfiguration {
-  servo::ServoOptions servo;
-  servo::PreparationOptions preparation;
-  servo::CalibrationOptions calibration;
+  ServoOptions servo;
+  PreparationOptions preparation;
+  CalibrationOptions calibration;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor& visitor)
   {
-    servo::ServoOptions::visit(self.servo, visitor);
+    ServoOptions::visit(self.servo, visitor);
     visitor.group("preparation", self.preparation);
     visitor.group("calibration", self.calibration);
   }
 };
 
-}  // namespace eyeslam::apps
+}  // namespace eyeslam::servo
