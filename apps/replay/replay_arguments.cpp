@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include "command_line/number_check.h"
 #include "command_line/program.h"
@@ -13,6 +14,10 @@ namespace {
 
 const char* const kExamples =
     "  eyeslam-replay info trial.lcm\n"
+    "  eyeslam-replay trial.lcm\n"
+    "  eyeslam-replay trial.lcm --only tracker --video video.mkv\n"
+    "  eyeslam-replay trial.lcm --set servo.cycle.tip_gain_hz=20 --json difference.json\n"
+    "  eyeslam-replay report trial.lcm --out report\n"
     "  eyeslam-replay trial.lcm --csv tables\n"
     "  eyeslam-replay trial.lcm --lcm 'udpm://239.255.76.67:7667?ttl=0' --speed 0.5 --from 10\n"
     "  eyeslam-replay cut trial.lcm --from 12.5 --to 20 --channels 'MICRON_.*|MARK' --out moment.lcm\n";
@@ -50,6 +55,48 @@ CLI::App* addCut(CLI::App& app, ReplayArguments& a)
   return cut;
 }
 
+CLI::App* addReport(CLI::App& app, ReplayArguments& a)
+{
+  CLI::App* report = addCommand(app, a, "report", "Scores and report of a trial, from its log alone");
+  report->add_option("--out", a.out, "Folder for them")->type_name("DIR")->required();
+  return report;
+}
+
+void addComputing(CLI::App& app, ReplayArguments& a)
+{
+  app.add_option("--only", a.only, "Compute again the tracker or the servo alone")
+      ->check(CLI::IsMember({"tracker", "servo"}));
+  app.add_option("--video", a.video, "The tracker's pictures; default: video.mkv beside LOG")->type_name("FILE");
+  app.add_option("--offset", a.offset, "What the video's clock is behind the log's, to be believed; default 0")
+      ->type_name("S")
+      ->check(within(-1e5, 1e5));
+  app.add_option("--config", a.config, "What if: YAML file of keys that shall be otherwise than recorded")
+      ->type_name("FILE");
+  app.add_option("--set", a.settings, "The same for one key; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->take_all();
+  app.add_option("--json", a.json, "Write what was compared for programs")->type_name("FILE");
+}
+
+// Of options that other work of this program has.
+void checkComputing(const ReplayArguments& a)
+{
+  if (!a.part.channels.empty())
+    throw UsageError("--channels: what was heard on all channels is needed to compute a log again; leave it out");
+}
+
+void checkNotComputing(const ReplayArguments& a)
+{
+  const std::pair<const char*, bool> given[] = {{"--only", !a.only.empty()},        {"--video", !a.video.empty()},
+                                                {"--offset", a.offset.has_value()}, {"--config", !a.config.empty()},
+                                                {"--set", !a.settings.empty()},     {"--json", !a.json.empty()}};
+  for (const auto& [name, is_given] : given) {
+    if (is_given)
+      throw UsageError(fmt::format("{}: nothing is computed again with --csv or --lcm; leave it out", name));
+  }
+}
+
 }  // namespace
 
 ReplayCommands addOptions(CLI::App& app, ReplayArguments& arguments)
@@ -57,6 +104,7 @@ ReplayCommands addOptions(CLI::App& app, ReplayArguments& arguments)
   addStandardOptions(app, kExamples);
   app.add_option("LOG", arguments.log, "LCM log, as lcm-logger or eyeslam-trial wrote it");
   addPart(app, arguments);
+  addComputing(app, arguments);
   app.add_option("--csv", arguments.csv, "Write its messages as tables, one file a channel")->type_name("DIR");
   addLinkOptions(app, arguments.link);
   CLI::Option* link = app.get_option("--lcm");
@@ -68,7 +116,15 @@ ReplayCommands addOptions(CLI::App& app, ReplayArguments& arguments)
       ->check(within(1e-3, 1e3))
       ->needs(link);
   app.add_flag("--quiet", arguments.quiet, "Print nothing but errors");
-  return {addInfo(app, arguments), addCut(app, arguments)};
+  return {addInfo(app, arguments), addCut(app, arguments), addReport(app, arguments)};
+}
+
+std::vector<configuration::Assignment> changesOf(const ReplayArguments& arguments)
+{
+  std::vector<configuration::Assignment> changes;
+  if (!arguments.config.empty()) changes = configuration::readYaml(arguments.config, configuration::YamlLists::joined);
+  for (const std::string& setting : arguments.settings) changes.push_back(configuration::parseSetting(setting));
+  return changes;
 }
 
 replay::LogSelection selectionOf(const ReplayArguments& arguments)
@@ -82,9 +138,7 @@ void check(const ReplayArguments& arguments)
 {
   if (arguments.log.empty()) throw UsageError("LOG is missing; an LCM log is wanted, as lcm-logger writes it");
   if (arguments.plays && !arguments.csv.empty()) throw UsageError("--csv and --lcm: one of them at a time");
-  if (!arguments.plays && arguments.csv.empty()) {
-    throw UsageError("nothing to do: give --csv DIR or --lcm URL, or the command info or cut before LOG");
-  }
+  arguments.plays || !arguments.csv.empty() ? checkNotComputing(arguments) : checkComputing(arguments);
 }
 
 }  // namespace eyeslam::apps

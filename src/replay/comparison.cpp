@@ -52,6 +52,7 @@ void add(ChannelComparison& channel, const std::string& field, double difference
 
 void Comparison::compare(const files::LogEvent& recorded, const files::LogEvent& recomputed)
 {
+  if (!counts(recorded)) return;
   ChannelComparison& channel = of(recorded.channel);
   ++channel.compared;
   if (sameBytes(recorded, recomputed)) {
@@ -74,6 +75,7 @@ void Comparison::compare(const files::LogEvent& recorded, const files::LogEvent&
 
 void Comparison::missing(const files::LogEvent& recorded)
 {
+  if (!counts(recorded)) return;
   ChannelComparison& channel = of(recorded.channel);
   ++channel.missing;
   noteFirst(channel, recorded, kWhole, bytesText(recorded), "");
@@ -81,9 +83,16 @@ void Comparison::missing(const files::LogEvent& recorded)
 
 void Comparison::extra(const files::LogEvent& recomputed)
 {
+  if (!counts(recomputed)) return;
   ChannelComparison& channel = of(recomputed.channel);
   ++channel.extra;
   noteFirst(channel, recomputed, kWhole, "", bytesText(recomputed));
+}
+
+void Comparison::restrictTo(std::int64_t from_utime, std::int64_t to_utime)
+{
+  from_ = from_utime;
+  to_ = to_utime;
 }
 
 bool Comparison::isIdentical() const

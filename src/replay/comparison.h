@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -55,6 +56,8 @@ class Comparison {
   void missing(const files::LogEvent& recorded);
   /// A recomputed message that was not recorded.
   void extra(const files::LogEvent& recomputed);
+  /// From now on only messages of this part count; us since 1970, the end not included.
+  void restrictTo(std::int64_t from_utime, std::int64_t to_utime);
   /// Lists a channel though nothing came on it.
   void expect(std::string_view channel) { of(channel); }
 
@@ -64,7 +67,9 @@ class Comparison {
 
  private:
   ChannelComparison& of(std::string_view channel);
+  bool counts(const files::LogEvent& event) const { return event.utime >= from_ && event.utime < to_; }
 
+  std::int64_t from_ = std::numeric_limits<std::int64_t>::min(), to_ = std::numeric_limits<std::int64_t>::max();
   std::vector<ChannelComparison> channels_;
 };
 

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eyeslam/replay/recorded_trial.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace eyeslam::replay {
+namespace {
+
+using configuration::ConfigurationError;
+using configuration::Field;
+
+bool canBeOtherwise(const std::string& key)
+{
+  constexpr const char* kComputed[] = {"servo.", "preparation.", "calibration.", "vision."};
+  return std::any_of(std::begin(kComputed), std::end(kComputed),
+                     [&key](const char* group) { return key.rfind(group, 0) == 0; });
+}
+
+trials::TrialSetting recordedSetting(const trials::TrialName& name, const mark_t& mark)
+try {
+  return trials::settingOf(name.scenario, mark.configuration);
+} catch (const ConfigurationError& error) {
+  throw ConfigurationError(fmt::format("MARK START of version {}: {}", mark.version, error.what()));
+}
+
+void requireSameExperiment(trials::TrialSetting recorded, trials::TrialSetting asked)
+{
+  const std::vector<Field> was = configuration::fieldsOf(recorded), is = configuration::fieldsOf(asked);
+  for (std::size_t i = 0; i < was.size(); ++i) {
+    if (canBeOtherwise(was[i].key) || configuration::textOf(was[i]) == configuration::textOf(is[i])) continue;
+    throw ConfigurationError(fmt::format(
+        "{}: decided on what is recorded, '{}'; keys of servo, preparation, calibration and vision can be otherwise",
+        was[i].key, configuration::textOf(was[i])));
+  }
+}
+
+}  // namespace
+
+std::optional<RecordedTrial> recordedTrial(const mark_t& mark, const std::vector<configuration::Assignment>& changes)
+{
+  const std::optional<trials::TrialName> name =
+      mark.kind == mark_t::START ? trials::TrialName::parse(mark.note) : std::nullopt;
+  if (!name) return std::nullopt;
+  const trials::TrialSetting recorded = recordedSetting(*name, mark);
+  RecordedTrial trial{*name, configuration::applied(recorded, changes), mark.session, mark.utime, mark.version};
+  requireSameExperiment(recorded, trial.setting);
+  return trial;
+}
+
+}  // namespace eyeslam::replay
