@@ -8,17 +8,40 @@
 #include "command_line/program.h"
 
 namespace eyeslam::apps {
+namespace {
+
+std::string placeBeside(const ReplayArguments& arguments)
+{
+  return (std::filesystem::path(arguments.log).parent_path() / "video.mkv").string();
+}
+
+std::string namedOrBeside(const ReplayArguments& arguments)
+{
+  if (!arguments.video.empty()) return arguments.video;
+  std::error_code none;
+  return std::filesystem::is_regular_file(placeBeside(arguments), none) ? placeBeside(arguments) : "";
+}
+
+[[noreturn]] void refuse(const ReplayArguments& arguments, const char* what)
+{
+  throw UsageError(fmt::format("{}: there is no {}; --video FILE is wanted", what, placeBeside(arguments)));
+}
+
+}  // namespace
 
 std::string videoOf(const ReplayArguments& arguments)
 {
   if (arguments.only == "servo") return "";
-  if (!arguments.video.empty()) return arguments.video;
-  const std::filesystem::path beside = std::filesystem::path(arguments.log).parent_path() / "video.mkv";
-  std::error_code none;
-  if (std::filesystem::is_regular_file(beside, none)) return beside.string();
-  const char* const option = arguments.only == "tracker" ? "--only tracker" : "--offset";
-  if (arguments.only.empty() && !arguments.offset) return "";
-  throw UsageError(fmt::format("{}: there is no {}; --video FILE is wanted", option, beside.string()));
+  const std::string video = namedOrBeside(arguments);
+  if (!video.empty() || (arguments.only.empty() && !arguments.offset)) return video;
+  refuse(arguments, arguments.only == "tracker" ? "--only tracker" : "--offset");
+}
+
+std::string requiredVideoOf(const ReplayArguments& arguments)
+{
+  const std::string video = namedOrBeside(arguments);
+  if (video.empty()) refuse(arguments, "overlay");
+  return video;
 }
 
 std::string videoText(const replay::VideoReplay& video)

@@ -13,6 +13,9 @@ namespace eyeslam::apps {
 /// @throws UsageError  --only tracker or --offset without a video
 std::string videoOf(const ReplayArguments& arguments);
 
+/// The same where one must be. @throws UsageError
+std::string requiredVideoOf(const ReplayArguments& arguments);
+
 /// How far video and log are apart, and what should be looked at; lines for people.
 std::string videoText(const replay::VideoReplay& video);
 
