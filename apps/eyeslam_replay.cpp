@@ -4,6 +4,7 @@
 #include "command_line/program.h"
 #include "replay/cut_run.h"
 #include "replay/info_run.h"
+#include "replay/overlay_run.h"
 #include "replay/playback_run.h"
 #include "replay/recompute_run.h"
 #include "replay/replay_arguments.h"
@@ -21,6 +22,7 @@ int main(int argc, char** argv)
                         if (commands.info->parsed()) return showLog(arguments);
                         if (commands.cut->parsed()) return cutLog(arguments);
                         if (commands.report->parsed()) return reportLog(arguments);
+                        if (commands.overlay->parsed()) return drawLog(arguments);
                         check(arguments);
                         if (!arguments.csv.empty()) return writeTables(arguments);
                         if (arguments.plays) return playLog(arguments);

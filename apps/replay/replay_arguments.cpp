@@ -17,6 +17,7 @@ const char* const kExamples =
     "  eyeslam-replay trial.lcm\n"
     "  eyeslam-replay trial.lcm --only tracker --video video.mkv\n"
     "  eyeslam-replay trial.lcm --set servo.cycle.tip_gain_hz=20 --json difference.json\n"
+    "  eyeslam-replay overlay trial.lcm --out overlay.mp4\n"
     "  eyeslam-replay report trial.lcm --out report\n"
     "  eyeslam-replay trial.lcm --csv tables\n"
     "  eyeslam-replay trial.lcm --lcm 'udpm://239.255.76.67:7667?ttl=0' --speed 0.5 --from 10\n"
@@ -62,14 +63,29 @@ CLI::App* addReport(CLI::App& app, ReplayArguments& a)
   return report;
 }
 
-void addComputing(CLI::App& app, ReplayArguments& a)
+void addVideo(CLI::App& app, ReplayArguments& a)
 {
-  app.add_option("--only", a.only, "Compute again the tracker or the servo alone")
-      ->check(CLI::IsMember({"tracker", "servo"}));
   app.add_option("--video", a.video, "The tracker's pictures; default: video.mkv beside LOG")->type_name("FILE");
   app.add_option("--offset", a.offset, "What the video's clock is behind the log's, to be believed; default 0")
       ->type_name("S")
       ->check(within(-1e5, 1e5));
+}
+
+CLI::App* addOverlay(CLI::App& app, ReplayArguments& a)
+{
+  CLI::App* overlay =
+      addCommand(app, a, "overlay", "The video beside a log with everything drawn that the log tells of");
+  addPart(*overlay, a);
+  addVideo(*overlay, a);
+  overlay->add_option("--out", a.out, "The new video, .mp4 or .mkv")->type_name("FILE")->required();
+  return overlay;
+}
+
+void addComputing(CLI::App& app, ReplayArguments& a)
+{
+  app.add_option("--only", a.only, "Compute again the tracker or the servo alone")
+      ->check(CLI::IsMember({"tracker", "servo"}));
+  addVideo(app, a);
   app.add_option("--config", a.config, "What if: YAML file of keys that shall be otherwise than recorded")
       ->type_name("FILE");
   app.add_option("--set", a.settings, "The same for one key; may be repeated")
@@ -116,7 +132,7 @@ ReplayCommands addOptions(CLI::App& app, ReplayArguments& arguments)
       ->check(within(1e-3, 1e3))
       ->needs(link);
   app.add_flag("--quiet", arguments.quiet, "Print nothing but errors");
-  return {addInfo(app, arguments), addCut(app, arguments), addReport(app, arguments)};
+  return {addInfo(app, arguments), addCut(app, arguments), addReport(app, arguments), addOverlay(app, arguments)};
 }
 
 std::vector<configuration::Assignment> changesOf(const ReplayArguments& arguments)

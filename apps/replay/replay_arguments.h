@@ -38,6 +38,7 @@ struct ReplayCommands {
   CLI::App* info = nullptr;
   CLI::App* cut = nullptr;
   CLI::App* report = nullptr;
+  CLI::App* overlay = nullptr;
 };
 
 /// Ties the options of the command line to the struct.
