@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "eyeslam/fixtures/vessel_walk.h"
 
@@ -13,7 +15,7 @@ using Way = std::vector<Eigen::Vector2d>;
 
 namespace {
 
-constexpr double kFar_px = 1e5;
+constexpr int kBeyonds = 4;         // lengths beyond an end that are told
 constexpr double kStraight = 0.77;  // cosine: 40 deg between what lies before and behind a point
 constexpr double kLook_px = 15.0;   // over which a way's direction is taken
 constexpr double kWidest = 2.5;     // of the least radius: no vessel of an eye is wider (facts, D4)
@@ -40,13 +42,29 @@ bool isOneVessel(const Vessel& vessel, const VesselWish& wish)
   return radius >= wish.radius_px && radius <= kWidest * wish.radius_px && radiusAt(vessel, 0.95) <= kEven * radius;
 }
 
-fixtures::VesselNetwork clearOnes(const fixtures::VesselNetwork& network, const VesselWish& wish)
+// A vessel and what it goes on into at both ends, straight on through whatever is there.
+Way throughVessel(const fixtures::VesselNetwork& network, std::size_t vessel, double longest_px)
 {
-  fixtures::VesselNetwork clear;
-  clear.junctions = network.junctions;
-  for (const Vessel& vessel : network.vessels)
-    if (isOneVessel(vessel, wish)) clear.vessels.push_back(vessel);
-  return clear;
+  const auto own = static_cast<double>(network.vessels[vessel].points.size());
+  const double far_px = 2.0 * own + longest_px;  // points are at most 2 px apart
+  Way way = fixtures::walk(network, vessel, far_px, fixtures::straightest, fixtures::Direction::backwards);
+  way.erase(way.begin(), way.begin() + static_cast<std::ptrdiff_t>(network.vessels[vessel].points.size()));
+  std::reverse(way.begin(), way.end());
+  const Way onwards = fixtures::walk(network, vessel, far_px, fixtures::straightest);
+  way.insert(way.end(), onwards.begin(), onwards.end());
+  return way;
+}
+
+// The points of vessels that are wide enough and one each.
+std::set<std::pair<double, double>> clearPoints(const fixtures::VesselNetwork& network, const VesselWish& wish)
+{
+  std::set<std::pair<double, double>> points;
+  for (const Vessel& vessel : network.vessels) {
+    if (!isOneVessel(vessel, wish)) continue;
+    for (const fixtures::CenterlinePoint& point : vessel.points)
+      points.emplace(point.position_px.x(), point.position_px.y());
+  }
+  return points;
 }
 
 bool isSmoothAt(const Way& way, std::size_t i)
@@ -91,13 +109,13 @@ std::vector<bool> freeBothWays(const Way& way, double radius_px, const fixtures:
   return result;
 }
 
-// A run within the area that is free both ways.
+// A run of good points within the area.
 struct Run {
   std::size_t way = 0, first = 0, count = 0;
   double length = 0.0;
 };
 
-void addRuns(const Way& way, std::size_t number, const std::vector<bool>& free, const VesselWish& wish,
+void addRuns(const Way& way, std::size_t number, const std::vector<bool>& good, const VesselWish& wish,
              std::vector<Run>& runs)
 {
   Run run{number};
@@ -107,7 +125,7 @@ void addRuns(const Way& way, std::size_t number, const std::vector<bool>& free, 
   };
   for (std::size_t i = 0; i < way.size(); ++i) {
     const double step = run.count > 0 ? (way[i] - way[i - 1]).norm() : 0.0;
-    if (!free[i] || !wish.area_px.contains(way[i]) || run.length + step > wish.longest_px) {
+    if (!good[i] || !wish.area_px.contains(way[i]) || run.length + step > wish.longest_px) {
       end(i + 1);
       continue;
     }
@@ -143,19 +161,23 @@ double crowding(const Way& way, const fixtures::VesselNetwork& network, double a
 
 ChosenVessel vesselToTrace(const fixtures::VesselNetwork& network, const VesselWish& wish)
 {
-  const fixtures::VesselNetwork clear = clearOnes(network, wish);
+  const auto clear = clearPoints(network, wish);
   std::vector<Way> ways;
   std::vector<Run> runs;
-  for (std::size_t first = 0; first < clear.vessels.size(); ++first) {
-    ways.push_back(fixtures::walk(clear, first, kFar_px, fixtures::straightest));
-    const double radius = radiusAt(clear.vessels[first], 0.5);
-    addRuns(ways.back(), first, freeBothWays(ways.back(), radius, network, wish), wish, runs);
+  for (std::size_t i = 0; i < network.vessels.size(); ++i) {
+    if (!isOneVessel(network.vessels[i], wish)) continue;
+    ways.push_back(throughVessel(network, i, wish.longest_px + kBeyonds * wish.beyond_px));
+    const double radius = radiusAt(network.vessels[i], 0.5);
+    std::vector<bool> good = freeBothWays(ways.back(), radius, network, wish);
+    for (std::size_t k = 0; k < good.size(); ++k)
+      good[k] = good[k] && clear.count({ways.back()[k].x(), ways.back()[k].y()}) > 0;
+    addRuns(ways.back(), ways.size() - 1, good, wish, runs);
   }
   // Crowding only shortens, and takes longer to find out.
   std::stable_sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.length > b.length; });
   ChosenVessel best;
   double best_worth = 0.0;
-  const auto beyond = static_cast<std::ptrdiff_t>(wish.beyond_px), farthest = 4 * beyond;
+  const auto beyond = static_cast<std::ptrdiff_t>(wish.beyond_px), farthest = kBeyonds * beyond;
   for (const Run& run : runs) {
     if (run.length <= best_worth) break;
     const auto begin = ways[run.way].begin() + static_cast<std::ptrdiff_t>(run.first);
