@@ -7,7 +7,7 @@ import tree
 
 COMMANDS = re.compile(r"^```sh\n(.*?)^```", re.M | re.S)
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)#\s]+)[^)]*\)")
-ORDINARY = {"cmake", "cd", "python3", "ffmpeg", "lcm-logger", "git", "mkdir", "chmod", "od", "sleep", "kill", "wait"}
+ORDINARY = {"cmake", "cd", "python3", "ffmpeg", "lcm-logger", "git", "mkdir", "chmod", "od", "sleep", "kill", "wait", "parallel"}
 
 
 def commands(document):
