@@ -18,7 +18,7 @@ const char* const kTable = "results.csv";
 const char* const kReport = "report.html";
 
 trials::TrialRecord judged(const ReplayArguments& arguments)
-{
+try {
   LogPass pass(arguments, "judging");
   trials::TrialJudge judge;
   while (const auto event = pass.next()) judge.take(event->event);
@@ -28,6 +28,8 @@ trials::TrialRecord judged(const ReplayArguments& arguments)
     throw files::FileError(arguments.log + ": no MARK START of a trial: nothing says what was to be reached");
   }
   return judge.record();
+} catch (const configuration::ConfigurationError& error) {  // of the log's MARK, not of the call
+  throw files::FileError(fmt::format("{}: {}", arguments.log, error.what()));
 }
 
 }  // namespace

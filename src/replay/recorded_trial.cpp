@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+
+#include "eyeslam/replay/recomputed_part.h"
 
 namespace eyeslam::replay {
 namespace {
@@ -22,7 +25,7 @@ trials::TrialSetting recordedSetting(const trials::TrialName& name, const mark_t
 try {
   return trials::settingOf(name.scenario, mark.configuration);
 } catch (const ConfigurationError& error) {
-  throw ConfigurationError(fmt::format("MARK START of version {}: {}", mark.version, error.what()));
+  throw ReplayError(fmt::format("MARK START of version {}: {}", mark.version, error.what()));
 }
 
 void requireSameExperiment(trials::TrialSetting recorded, trials::TrialSetting asked)

@@ -25,7 +25,8 @@ struct RecordedTrial {
 ///                 `preparation`, `calibration`) and of the tracker (`vision`) may be otherwise; the others decided on
 ///                 what is recorded
 /// @return none where the MARK is not that of a trial's start
-/// @throws configuration::ConfigurationError  naming the key, or the version that wrote what is not understood
+/// @throws configuration::ConfigurationError  naming the key that cannot be changed so; ReplayError: naming the version
+///         that wrote what is not understood
 std::optional<RecordedTrial> recordedTrial(const mark_t& mark, const std::vector<configuration::Assignment>& changes);
 
 }  // namespace eyeslam::replay

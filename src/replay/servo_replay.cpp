@@ -19,12 +19,11 @@ constexpr const char* kCompared[] = {"MICRON_COMMAND", "LASER_COMMAND", "SERVO_S
 
 bool isMark(std::string_view channel) { return channel == "MARK"; }
 
-servo::ServoConfiguration liveConfiguration(const mark_t& mark, const std::vector<configuration::Assignment>& changes)
+servo::ServoConfiguration liveConfiguration(const mark_t& mark)
 try {
-  const auto recorded = configuration::parseYaml(kServo, mark.configuration);
-  return configuration::applied(configuration::applied(servo::ServoConfiguration{}, recorded), changes);
+  return configuration::applied(servo::ServoConfiguration{}, configuration::parseYaml(kServo, mark.configuration));
 } catch (const configuration::ConfigurationError& error) {
-  throw configuration::ConfigurationError(fmt::format("MARK START of version {}: {}", mark.version, error.what()));
+  throw ReplayError(fmt::format("MARK START of version {}: {}", mark.version, error.what()));
 }
 
 }  // namespace
@@ -79,8 +78,8 @@ void ServoReplay::beginTrial(const mark_t& mark)
 
 void ServoReplay::beginLive(const mark_t& mark)
 {
-  timeline_ =
-      std::make_unique<LiveTimeline>(liveConfiguration(mark, changes_), mark.session, mark.utime, comparison_, goals_);
+  timeline_ = std::make_unique<LiveTimeline>(configuration::applied(liveConfiguration(mark), changes_), mark.session,
+                                             mark.utime, comparison_, goals_);
   start_ = mark;
   live_ = true;
   about_ = fmt::format("servo of {} {}, which ran in real time", mark.sender, mark.version);

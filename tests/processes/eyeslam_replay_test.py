@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """eyeslam-replay on logs of a live simulator, and beside LCM's own tools. eyeslam_replay_test.py PROGRAM_FOLDER."""
 import csv
+import itertools
 import json
 import os
 import resource
@@ -17,7 +18,9 @@ from live_case import FOLDER, LiveCase
 
 SECONDS = 3
 HEADER = struct.Struct(">qqqqq")  # of a message of ours: fingerprint, utime, utime_sent, seq, session
+SCENARIOS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scenarios")
 _live = []
+_trials = []
 
 
 def record(url, path, play):
@@ -216,6 +219,88 @@ class Playing(ReplayCase):
         self.assertEqual(playing.end(signal.SIGINT, seconds=5), 0, playing.text())
         self.assertIn("interrupted at 0.000 s", playing.text())
         self.assertEqual(len(list(lcm_log.read(self.path("played.lcm")))), 1)
+
+
+class ComputedAgain(ReplayCase):
+    """A short trial's log, computed again."""
+
+    def trial(self):
+        """The folder of a trial, made once; not to be changed."""
+        if not _trials:
+            folder = tempfile.mkdtemp(prefix="eyeslam_replay_test_")
+            unittest.addModuleCleanup(shutil.rmtree, folder, ignore_errors=True)
+            keys = {"aid": "hard", "duration_s": 1, "settling_s": 1, "hardware.camera.width": 400, "hardware.camera.height": 304,
+                    "servo.image_width_px": 400, "servo.image_height_px": 304, "vision.tracker.frame.scale": 1}
+            settings = [word for key, value in keys.items() for word in ("--set", f"{key}={value}")]
+            subprocess.run([os.path.join(FOLDER, "eyeslam-trial"), os.path.join(SCENARIOS, "vessel_tracing.yaml"), *settings,
+                            "--quiet", "--out", folder], check=True, timeout=300)
+            _trials.append(folder)
+        return _trials[0]
+
+    def log(self):
+        return os.path.join(self.trial(), "vessel_tracing/seed_0000/trial.lcm")
+
+    def compared(self, *arguments, status=0):
+        done = self.replay(*arguments, "--json", self.path("replay.json"), status=status)
+        with open(self.path("replay.json")) as file:
+            report = json.load(file)
+        return done, report, {channel["name"]: channel for channel in report["channels"]}
+
+    def test_says_the_same_bytes(self):
+        done, report, channels = self.compared(self.log())
+        events = list(lcm_log.read(self.log()))
+        self.assertEqual((report["events"], report["skipped"]), (len(events), 0))
+        for name in ("MICRON_COMMAND", "LASER_COMMAND", "SERVO_STATUS", "REGISTRATION"):
+            self.assertEqual(channels[name]["compared"], sum(event[1] == name for event in events), name)
+            self.assertEqual(channels[name]["identical"], channels[name]["compared"])
+            self.assertIsNone(channels[name]["first_difference_utime"])
+        self.assertIn("in lock step: vessel_tracing, seed 0", done.stdout)
+        self.assertEqual(self.replay(self.log(), "--quiet").stdout, "")
+
+    def test_a_changed_command_is_status_1_and_found_by_time_and_field_but_not_beside_its_part(self):
+        events = list(lcm_log.read(self.log()))
+        number = [i for i, event in enumerate(events) if event[1] == "MICRON_COMMAND"][1000]
+        utime, channel, data = events[number]
+        events[number] = (utime, channel, data[:47] + bytes([data[47] ^ 1]) + data[48:])
+        lcm_log.write(self.path("changed.lcm"), events)
+        done, _, channels = self.compared(self.path("changed.lcm"), status=1)
+        self.assert_refused(done, 1, "changed.lcm: 1 of", "MICRON_COMMAND.utime_image_us")
+        self.assertEqual(channels["MICRON_COMMAND"]["first_difference_utime"], utime)
+        at = 1e-6 * (utime - events[0][0])
+        _, _, channels = self.compared(self.path("changed.lcm"), "--from", str(at + 0.001))
+        self.assertGreater(channels["MICRON_COMMAND"]["compared"], 1000)
+        self.assert_refused(self.call("eyeslam-replay", self.path("changed.lcm"), "--to", str(at + 0.001)), 1, "1 of")
+
+    def test_a_what_if_says_how_far_its_goals_are_off(self):
+        with open(self.path("other.yaml"), "w") as file:
+            file.write("servo:\n  cycle:\n    predicts_null: false\n")
+        done, _, channels = self.compared(self.log(), "--config", self.path("other.yaml"), status=1)
+        self.assertRegex(done.stdout, r"goals of \d+ commands: .* um apart in the median")
+        self.assertIn("goal_x_m", {field["name"] for field in channels["MICRON_COMMAND"]["fields"]})
+        self.assert_refused(self.call("eyeslam-replay", self.log(), "--set", "motion=jerky"), 2, "motion", "recorded")
+        self.assert_refused(self.call("eyeslam-replay", self.log(), "--set", "servo.no_such=1"), 2, "servo.no_such")
+
+    def test_a_report_is_that_of_the_trial_but_for_the_time_it_took(self):
+        self.replay("report", self.log(), "--out", self.path("report"))
+        for name, theirs in (("results.json", os.path.dirname(self.log())), ("report.html", os.path.dirname(self.log())),
+                             ("results.csv", self.trial())):
+            with open(self.path(f"report/{name}")) as mine, open(os.path.join(theirs, name)) as other:
+                pairs = [(a, b) for a, b in itertools.zip_longest(mine, other) if a != b]
+            if name == "results.csv":
+                (row, was), = pairs
+                fields = [i for i, (a, b) in enumerate(zip(row.split(","), was.split(","))) if a != b]
+                self.assertEqual(len(fields), 1, pairs)
+            else:
+                self.assertEqual(len(pairs), 1, pairs)
+                self.assertIn("wall_s", pairs[0][0])
+
+    def test_what_a_log_lacks_is_refused_in_one_line(self):
+        self.assert_refused(self.call("eyeslam-replay", self.simulated()), 1, "no MARK START of eyeslam-trial or eyeslam-servo")
+        self.assert_refused(self.call("eyeslam-replay", "report", self.simulated(), "--out", self.path("report")), 1,
+                            "no MARK START of a trial")
+        self.assertFalse(os.path.exists(self.path("report")))
+        self.assert_refused(self.call("eyeslam-replay", self.log(), "--channels", "MARK"), 2, "--channels")
+        self.assert_refused(self.call("eyeslam-replay", self.log(), "--csv", self.path("a"), "--set", "a=1"), 2, "--set")
 
 
 class RealTools(ReplayCase):
