@@ -101,6 +101,7 @@ constexpr std::array kWords{
     Word{Reason::spot_off_target, "spot_off_target"},
     Word{Reason::tip_moves, "tip_moves"},
     Word{Reason::tip_unsettled, "tip_unsettled"},
+    Word{Reason::out_of_view, "out_of_view"},
     Word{Reason::unpowered, "unpowered"},
     Word{Reason::controller_restarted, "controller_restarted"},
     Word{Reason::rival_servo, "rival_servo"},

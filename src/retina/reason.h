@@ -102,6 +102,7 @@ enum class Reason : std::int16_t {
   spot_off_target = 138,    ///< in the newest frame
   tip_moves = 139,          ///< too fast
   tip_unsettled = 140,      ///< not long enough at its goal
+  out_of_view = 141,        ///< the picture does not show the place
   // The servo behind its messages
   unpowered = 150,             ///< the manipulator's actuators are off
   controller_restarted = 151,  ///< another session speaks for the manipulator

@@ -117,7 +117,7 @@ void BurnRun::rest() noexcept
   passed_over_ = Reason::plan_done;
   last_scan_ = Reason::approaching;
   travelling_ = false;
-  dwelt_s_ = settled_s_ = unreachable_s_ = 0.0;
+  dwelt_s_ = settled_s_ = waited_s_ = 0.0;
 }
 
 void BurnRun::observe(const BurnInput& input) noexcept
@@ -188,18 +188,28 @@ bool BurnRun::isBurntAlready(std::size_t index, const Preparation& preparation) 
   return ledger_.isBurnt(preparation.map_id, target.position_px, 0.5 * target.burn_um / preparation.um_per_px);
 }
 
-bool BurnRun::isWithinReach(std::size_t index, const BurnInput& input) const noexcept
+// The hand and the retina move: what is no target now may be one in a moment. No tip goes where nobody sees it.
+Reason BurnRun::whyNotNow(std::size_t index, const BurnInput& input) const noexcept
 {
-  const Eigen::Vector3d tip = aim_.tipFor(placeOf(index, *input.preparation), 1e-6 * options_.standoff_um);
-  return (tip - input.null).norm() <= input.reach - 1e-6 * options_.interlocks.reach_left_um;
+  const Eigen::Vector2d target = placeOf(index, *input.preparation);
+  const Eigen::Vector3d tip = aim_.tipFor(target, 1e-6 * options_.standoff_um);
+  if (!((tip - input.null).norm() <= input.reach - 1e-6 * options_.interlocks.reach_left_um)) return Reason::reach_ends;
+  const bool seen = isInView(tip, input) && isInView({target.x(), target.y(), 0.0}, input);
+  return seen ? Reason::none : Reason::out_of_view;
+}
+
+bool BurnRun::isInView(const Eigen::Vector3d& place, const BurnInput& input) const noexcept
+{
+  const Eigen::Vector2d view = input.view.toView(place).head<2>();
+  return view.cwiseMin(input.view_size - view).minCoeff() >= 1e-6 * options_.view_margin_um;
 }
 
 void BurnRun::choose(const BurnInput& input) noexcept
 {
   if (target_) {
-    const bool reached = isWithinReach(*target_, input);
-    unreachable_s_ = reached ? 0.0 : unreachable_s_ + std::max(0.0, input.step_s);
-    const bool patient = unreachable_s_ <= 1e-3 * options_.patience_ms;
+    const bool now = whyNotNow(*target_, input) == Reason::none;
+    waited_s_ = now ? 0.0 : waited_s_ + std::max(0.0, input.step_s);
+    const bool patient = waited_s_ <= 1e-3 * options_.patience_ms;
     if (patient && whyNotTarget(*target_, input) == Reason::none) return;
     rest();
   }
@@ -218,8 +228,8 @@ void BurnRun::lookAt(const BurnInput& input) noexcept
   if (whyNotTarget(index, input) != Reason::none) return;
   if (isBurntAlready(index, *input.preparation)) {
     ledger_.record(index, Fate::refused, Reason::target_burnt, 0.0);
-  } else if (!isWithinReach(index, input)) {
-    passed_over_ = Reason::reach_ends;
+  } else if (const Reason why = whyNotNow(index, input); why != Reason::none) {
+    passed_over_ = why;
   } else {
     target_ = index;
   }

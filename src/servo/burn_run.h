@@ -18,6 +18,7 @@
 #include "eyeslam/servo/pulse_watch.h"
 #include "eyeslam/servo/spot_aim.h"
 #include "eyeslam/servo/timed_ring.h"
+#include "eyeslam/servo/view_pose.h"
 
 namespace eyeslam::servo {
 
@@ -57,6 +58,8 @@ struct BurnInput {
   double reach_left = 0.0;                          ///< m, of the present one
   std::int64_t sight_utime = 0;                     ///< mid-exposure of the newest frame that was searched for a spot
   std::optional<Eigen::Vector2d> spot;              ///< of the aiming beam in that frame, by that frame's pose
+  ViewPose view;                                    ///< of this instant
+  Eigen::Vector2d view_size = Eigen::Vector2d::Zero();  ///< of the picture, m
 };
 
 struct BurnOutput {
@@ -67,11 +70,11 @@ struct BurnOutput {
 };
 
 /// The state Laser: goes to one target of the plan after the other, in its order, holds the beam on it, and asks for
-/// one pulse where every interlock is closed. What is invalid in the newest map, out of the hand's reach, in a zone or
-/// already burnt is passed over. A pulse counts when the laser has said how long it was; until then there is no other.
-/// One that was cut is recorded and not repeated. To be called in every cycle, whatever the state, so that the fate of
-/// a pulse is always learnt.
-/// No clock, no message. Never throws, never allocates. Source: loop study, sections 2.8, 5.
+/// one pulse where every interlock is closed. What is invalid in the newest map, out of the hand's reach, out of the
+/// picture, in a zone or already burnt is passed over. A pulse counts when the laser has said how long it was; until
+/// then there is no other. One that was cut is recorded and not repeated. To be called in every cycle, whatever the
+/// state, so that the fate of a pulse is always learnt. No clock, no message. Never throws, never allocates. Source:
+/// loop study, sections 2.8, 5.
 ///
 ///   const BurnOutput& out = run.step(input);
 ///   if (out.goal) fixture_goal = *out.goal;
@@ -104,7 +107,8 @@ class BurnRun {
   retina::Reason whyNotTarget(std::size_t index, const BurnInput& input) const noexcept;
   retina::Reason whyZoned(std::size_t index, const BurnInput& input) const noexcept;
   bool isBurntAlready(std::size_t index, const Preparation& preparation) const noexcept;
-  bool isWithinReach(std::size_t index, const BurnInput& input) const noexcept;
+  bool isInView(const Eigen::Vector3d& place, const BurnInput& input) const noexcept;
+  retina::Reason whyNotNow(std::size_t index, const BurnInput& input) const noexcept;
 
   void approach(const BurnInput& input) noexcept;
   double speed() const noexcept;
@@ -129,7 +133,7 @@ class BurnRun {
   retina::Reason passed_over_ = retina::Reason::plan_done;  // what this search has found so far
   retina::Reason last_scan_ = retina::Reason::approaching;  // what the last whole one found
   bool travelling_ = false;                                 // travel_ stands somewhere
-  double dwelt_s_ = 0.0, settled_s_ = 0.0, unreachable_s_ = 0.0;
+  double dwelt_s_ = 0.0, settled_s_ = 0.0, waited_s_ = 0.0;
 
   std::int64_t sight_utime_ = 0;
   std::optional<Eigen::Vector2d> spot_;             // in that frame

@@ -13,7 +13,8 @@ struct BurnRunOptions {
   double travel_m_s2 = 0.2;
   double dwell_ms = 200.0;
   double start_within_ms = 3.0;
-  double patience_ms = 1000.0;
+  double patience_ms = 300.0;
+  double view_margin_um = 100.0;
   double attempts = 3.0;
   double whole_share = 0.95;
   double scale_tolerance = 0.03;
@@ -35,8 +36,11 @@ struct BurnRunOptions {
                   "a pulse begins so soon after a new pose or waits for the next, 0 = at any time; source: loop study, "
                   "2.8, fewest far pulses");
     visitor.field("patience_ms", self.patience_ms, Range{0, 60000}, "ms",
-                  "out of reach for so long, a target is left for later; source: a hand follows within a second, facts "
-                  "C4");
+                  "out of reach or view for so long, a target is left for later; source: below the way to another and "
+                  "back, 0.2 to 0.5 s");
+    visitor.field("view_margin_um", self.view_margin_um, Range{0, 2000}, "um",
+                  "from tip and spot at a target to the picture's border; source: rendered frames, where a spot's rim "
+                  "is cut it is not found");
     visitor.field("attempts", self.attempts, Range{1, 100}, "",
                   "a target whose pulse the laser did not begin so often is given up; source: proposal");
     visitor.field("whole_share", self.whole_share, Range{0.5, 1}, "",

@@ -178,6 +178,8 @@ void ServoSenses::describe(const Outlook& outlook, BurnInput& input) const noexc
   input.tip = cycle_.onRetina(state->tip.position, input.tip_utime);
   input.shaft = cycle_.directionOnRetina(shaft_, input.tip_utime);
   input.null = outlook.null_retina;
+  input.view = {metresPerPx() * scale_.centre_px, outlook.retina.view_T_retina};
+  input.view_size = 2.0 * input.view.centre;
   input.reach = std::min(state->abilities.reach_lateral, kMilli * options_.cycle.limits.reach_mm);
   input.reach_left = input.reach - (state->tip.position - state->null.position).norm();
   input.pose_error = poseError(cycle_.tipInView() - metresPerPx() * scale_.centre_px);

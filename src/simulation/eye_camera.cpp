@@ -75,7 +75,8 @@ struct EyeCamera::Scene {
 
 double umPerPx(const EyeCameraOptions& options, std::uint64_t seed)
 {
-  return umPerPixel(condition(options.condition).tissue, {{options.width, options.height}, 1, options.fps, seed});
+  const SequenceOptions sequence{{options.width, options.height}, 1, options.fps, seed};
+  return options.widening * umPerPixel(condition(options.condition).tissue, sequence);
 }
 
 EyeCamera::EyeCamera(const EyeCameraOptions& options, const Fundus& fundus, std::uint64_t seed)

@@ -20,6 +20,7 @@ struct EyeCameraOptions {
   double duration_s = 600.0;
   double drift_um = 15.0;
   double drift_s = 10.0;
+  double widening = 1.0;
   double view_x_mm = -1.0;
   double view_y_mm = -1.0;
 
@@ -43,6 +44,9 @@ struct EyeCameraOptions {
                   "RMS per axis by which the picture wanders against the manipulator; source: loop study, 1");
     visitor.field("drift_s", self.drift_s, Range{0.01, 1000}, "s",
                   "time constant of the wandering; source: loop study, 1");
+    visitor.field(
+        "widening", self.widening, Range{0.25, 4}, "",
+        "of the view by the surgeon's zoom, times what the condition shows; source: a pattern must be in view");
     visitor.field("view_x_mm", self.view_x_mm, Range{-1, 100}, "mm",
                   "of the retina's picture under the image's centre at the start; -1: looked for; source: the surgeon");
     visitor.field("view_y_mm", self.view_y_mm, Range{-1, 100}, "mm", "the same downwards; source: the surgeon");

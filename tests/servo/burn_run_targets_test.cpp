@@ -107,3 +107,25 @@ TEST(BurnRunTargets, ATargetOutOfReachIsLeftForLater)
   scene.run_ms(1500);
   EXPECT_EQ(scene.laser.pulses.back(), 10);
 }
+
+TEST(BurnRunTargets, NoTipGoesOutOfThePicture)
+{
+  BurnScene scene(linePlan(3));
+  // The target is 0 from the retina's left edge, its tip 0.59 mm to the left of it: 60 um from the picture's border.
+  const auto aside = [](BurnInput& in) { in.view.view_T_retina.x = 0.65e-3; };
+  for (int i = 0; i < 3000; ++i) scene.step(aside);
+  EXPECT_EQ(scene.laser.pulses, (std::vector<int>{11, 12}));
+  EXPECT_EQ(scene.step(aside).reason, Reason::out_of_view);
+  EXPECT_FALSE(scene.step(aside).goal);
+  scene.run_ms(1500);  // the eye has moved
+  EXPECT_EQ(scene.laser.pulses.back(), 10);
+}
+
+TEST(BurnRunTargets, WhereThePictureLeavesTheTargetTheNextOneIsBurntFirst)
+{
+  BurnScene scene(linePlan(2));
+  scene.run_ms(100);  // on the way to the first
+  const auto aside = [](BurnInput& in) { in.view.view_T_retina.x = 0.65e-3; };
+  for (int i = 0; i < 1500; ++i) scene.step(aside);
+  EXPECT_EQ(scene.laser.pulses, (std::vector<int>{11}));
+}

@@ -98,6 +98,7 @@ std::vector<Opening> openings()
        }},
       {"swaying tip", Reason::tip_unsettled, [](BurnInput& in) { in.tip.x() += 100e-6 * sine(3.1, in.now); }},
       {"out of everyone's reach", Reason::reach_ends, [](BurnInput& in) { in.null.x() += 5e-3; }},
+      {"out of the picture", Reason::out_of_view, [](BurnInput& in) { in.view.view_T_retina.x = 30e-3; }},
       {"late after the pose", Reason::pose_not_new, [](BurnInput& in) { in.since_pose = 4e-3; }},
   };
 }
@@ -157,7 +158,8 @@ TEST(BurnRun, ARunningPulseIsStoppedInTheVeryCycleThatAnInterlockOpens)
   for (const Opening& opening : openings()) {
     const bool only_to_begin = opening.reason == Reason::pose_surprising || opening.reason == Reason::retina_jumped ||
                                opening.reason == Reason::pose_not_new || opening.reason == Reason::tip_moves ||
-                               opening.reason == Reason::tip_unsettled || opening.name == "out of everyone's reach";
+                               opening.reason == Reason::tip_unsettled || opening.reason == Reason::out_of_view ||
+                               opening.name == "out of everyone's reach";
     if (only_to_begin) continue;
     BurnScene scene(linePlan(1));
     beginPulse(scene);

@@ -138,6 +138,9 @@ class BurnScene {
     in.preparation = prepared.get();
     in.map_id = kMap;
     in.registered = in.tracked = true;
+    in.view.centre = {5e-3, 5e-3};
+    in.view.view_T_retina.x = in.view.view_T_retina.y = 2e-3;
+    in.view_size = 2.0 * in.view.centre;
     in.um_per_px = prepared->um_per_px;
     in.pose_utime = frame_utime_;
     in.pose_age = 1e-6 * static_cast<double>(now - frame_utime_);
