@@ -84,6 +84,13 @@ void takeAny(const MessageType& type, const files::LogEvent& event, std::vector<
   (take<Messages>(type, event, list) || ...);
 }
 
+std::uint64_t bitsOf(double value)
+{
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
 }  // namespace
 
 std::vector<FieldValue> valuesOf(const files::LogEvent& event)
@@ -98,8 +105,7 @@ std::vector<FieldValue> valuesOf(const files::LogEvent& event)
 
 bool isSame(const FieldValue& a, const FieldValue& b)
 {
-  return a.kind == b.kind && a.integer == b.integer && std::memcmp(&a.real, &b.real, sizeof a.real) == 0 &&
-         a.characters == b.characters;
+  return a.kind == b.kind && a.integer == b.integer && bitsOf(a.real) == bitsOf(b.real) && a.characters == b.characters;
 }
 
 double distance(const FieldValue& a, const FieldValue& b)
