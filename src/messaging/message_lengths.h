@@ -19,7 +19,9 @@ bool hasItsLengths(const std::uint8_t* bytes, std::size_t size)
     static const auto kSize = static_cast<std::size_t>(Message().getEncodedSize());
     return size == kSize;
   } else {
-    return Conversion<Message>::hasItsLengths(ByteWalk(bytes + sizeof(std::int64_t), size - sizeof(std::int64_t)));
+    constexpr std::size_t kFingerprint = sizeof(std::int64_t);
+    if (size < kFingerprint) return false;
+    return Conversion<Message>::hasItsLengths(ByteWalk(bytes + kFingerprint, size - kFingerprint));
   }
 }
 

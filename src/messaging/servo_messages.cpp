@@ -22,7 +22,8 @@ bool isPlane(const PublishedPlane& plane)
 std::string_view word(ServoState state)
 {
   constexpr std::array<std::string_view, 6> kWords{"standby", "ready", "assist", "laser", "hold", "fault"};
-  return kWords[static_cast<std::size_t>(state)];
+  const auto number = static_cast<std::size_t>(state);
+  return number < kWords.size() ? kWords[number] : "unknown";
 }
 
 template <>

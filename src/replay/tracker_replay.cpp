@@ -20,6 +20,8 @@ constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t kPatience_us = 2'000'000;  // for the next frame: latency and period are a second together
 constexpr std::size_t kMostComputed = 4096;       // messages without a recorded one, a channel
 constexpr std::int64_t kMostAfterTheLast = 64;    // frames
+constexpr std::int64_t kMostLost = 10'000;        // frames: more is no gap, but a number that cannot be
+constexpr double kLongestExposure_s = 1.0;
 constexpr std::size_t kTimeSentAt = 16, kTimeBytes = 8, kTagBytes = 16;  // in a message (contracts, section 4)
 
 bool isVision(std::string_view channel) { return channel == kPose || channel == kTip || channel == kMap; }
@@ -32,7 +34,8 @@ std::optional<messaging::FrameStamp> stampIn(const std::vector<std::uint8_t>& by
 {
   Message message{};
   if (!messaging::decode(bytes.data(), bytes.size(), message)) return std::nullopt;
-  return messaging::FrameStamp{message.utime, message.frame, message.exposure};
+  const bool usual = message.exposure >= 0.0 && message.exposure <= kLongestExposure_s;
+  return messaging::FrameStamp{message.utime, message.frame, usual ? message.exposure : 0.0};
 }
 
 }  // namespace
@@ -121,7 +124,7 @@ void TrackerReplay::begin(std::int64_t session)
 void TrackerReplay::expectFrame(const Held& held)
 {
   last_sent_ = std::max(last_sent_, held.header.utime_sent);
-  if (held.channel == kMap || held.header.seq < next_number_) return;
+  if (held.channel == kMap || held.header.seq < next_number_ || held.header.seq - next_number_ > kMostLost) return;
   const auto stamp = held.channel == kPose ? stampIn<retina_pose_t>(held.bytes) : stampIn<tool_tip_t>(held.bytes);
   if (stamp) expect(held.header.seq, *stamp, held.header.utime_sent);
 }

@@ -135,7 +135,10 @@ void TrialScene::chooseVessel(double longest)
   const Eigen::Vector2d inset = (border / px).cwiseMin(0.49 * size);
   const cv::Mat_<std::uint8_t> disc = brightPlaces(fundus_);
   VesselWish wish{{inset, size - inset}, longest / px, kRadius / px, kApart / px, {}, 0.0};
-  wish.excluded = [&disc](const Eigen::Vector2d& at) { return disc(cvRound(at.y()), cvRound(at.x())) != 0; };
+  wish.excluded = [&disc](const Eigen::Vector2d& at) {
+    const cv::Point pixel(cvRound(at.x()), cvRound(at.y()));
+    return !cv::Rect({}, disc.size()).contains(pixel) || disc(pixel) != 0;
+  };
   ChosenVessel chosen;
   for (const double beyond : kBeyond) {
     wish.beyond_px = beyond / px;

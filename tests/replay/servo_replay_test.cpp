@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "eyeslam/configuration/listing.h"
 #include "eyeslam/messaging/decoding.h"
 #include "eyeslam/messaging/record_messages.h"
+#include "support/broken_messages.h"
 #include "support/short_trial.h"
 
 namespace eyeslam::replay {
@@ -178,6 +180,46 @@ TEST(ServoReplay, FollowsALiveServoByTheTimesOfItsCommands)
   EXPECT_LE(commands.extra, 10);
   EXPECT_GT(again.servo.goals().count(), 1000);
   EXPECT_LT(again.servo.goals().quantile(0.5), 5.0);  // um
+}
+
+// @return events of a trial, a hundredth of them broken, and some gone or at another time
+std::vector<KeptEvent> broken(std::vector<KeptEvent> events, std::mt19937& random)
+{
+  for (std::size_t i = 1; i < events.size(); ++i) {
+    if (random() % 100 == 0) support::breakMessage(events[i].bytes, random);
+    if (random() % 2000 == 0) events[i].utime += static_cast<std::int64_t>(random() % 4'000'000) - 2'000'000;
+    if (random() % 500 == 0) events.erase(events.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  return events;
+}
+
+TEST(ServoReplay, AndTheJudgeComeToAnEndWithABrokenTrial)
+{
+  std::mt19937 random(5);
+  for (int i = 0; i < 4; ++i) {
+    const std::vector<KeptEvent> events = broken(traced().events, random);
+    try {
+      const Replayed again(events);
+      EXPECT_GT(again.on("MICRON_COMMAND").compared, 0);
+    } catch (const ReplayError& error) {
+      EXPECT_STRNE(error.what(), "");
+    }
+    trials::TrialJudge judge(traced().scene);
+    for (const KeptEvent& kept : events) judge.take(kept.event());
+    ASSERT_TRUE(judge.isTrial());
+    EXPECT_GE(judge.record().score.hold_events, 0);
+  }
+}
+
+TEST(ServoReplay, AReportIsMadeOfALaserTrialThatLostItsPlan)
+{
+  ShortTrial trial("task: laser\naid: manual\nduration_s: 8\n");
+  trials::TrialJudge judge(trial.scene);
+  for (const KeptEvent& kept : trial.run().events)
+    if (kept.channel != "BURN_PLAN") judge.take(kept.event());
+  const trials::TrialRecord record = judge.record();
+  ASSERT_FALSE(record.pulses.empty()) << "nothing was burnt";
+  EXPECT_EQ(record.pulses.front().placement, 0.0) << "nobody knows where it was meant to go";
 }
 
 }  // namespace

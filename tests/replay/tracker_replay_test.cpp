@@ -5,10 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/imgproc.hpp>
+#include <random>
 
 #include "eyeslam/messaging/decoding.h"
 #include "eyeslam/replay/message_types.h"
+#include "support/broken_messages.h"
 #include "support/filmed_vision.h"
+#include "support/sanitized.h"
 
 namespace eyeslam::replay {
 namespace {
@@ -153,6 +156,23 @@ TEST(TrackerReplay, SaysWhichPosesHaveNoPictureAndWhichTimesCannotBe)
   EXPECT_EQ(again.findings.times_repeated, 1);
   EXPECT_EQ(again.findings.times_backwards, 1);
   EXPECT_EQ(again.findings.first_bad_time, 40);
+}
+
+TEST(TrackerReplay, ComesToAnEndWithBrokenMessages)
+{
+  std::mt19937 random(8);
+  const std::string film = filmed().film("broken.mkv", filmed().pictures);
+  for (int i = 0; i < support::cases(6); ++i) {
+    support::WrittenLog odd;
+    SortedLog log(filmed().path);
+    while (const auto event = log.next()) {
+      std::string bytes(reinterpret_cast<const char*>(event->event.data), event->event.size);
+      if (random() % 20 == 0) support::breakMessage(bytes, random);
+      odd.add(std::string(event->event.channel), support::Bytes(bytes.begin(), bytes.end()), event->event.utime);
+    }
+    const Replayed again = replayed(odd.finish(), film, usual());
+    EXPECT_GT(again.findings.frames, 0) << "case " << i;
+  }
 }
 
 }  // namespace
