@@ -195,15 +195,6 @@ const simulation::RetinaPose& TrialJudge::retinaAt(std::int64_t utime) const
       std::clamp<std::int64_t>(step, 0, static_cast<std::int64_t>(retina_.size()) - 1))];
 }
 
-// Null where the log lost the plan: it says where pulses went, not where they were meant to go.
-const burn_target_t* TrialJudge::targetOf(const Pulse& pulse) const
-{
-  if (!plan_) return nullptr;
-  const auto found = std::find_if(plan_->target.begin(), plan_->target.end(),
-                                  [&pulse](const burn_target_t& target) { return target.id == pulse.target; });
-  return found != plan_->target.end() ? &*found : nullptr;
-}
-
 PulseRecord TrialJudge::recordOf(const Pulse& pulse) const
 {
   PulseRecord record;
@@ -212,9 +203,10 @@ PulseRecord TrialJudge::recordOf(const Pulse& pulse) const
   record.spot = record.wanted = pulse.spot;
   record.duration = kMicro * static_cast<double>(pulse.end - pulse.begin + kPeriod_us);
   double burn = 0.0;
-  if (const burn_target_t* target = targetOf(pulse)) {
-    record.wanted = ontoRetina(target->x_px, target->y_px);
-    burn = kMicro * target->burn_um;
+  for (const burn_target_t& target : plan_->target) {
+    if (target.id != pulse.target) continue;
+    record.wanted = ontoRetina(target.x_px, target.y_px);
+    burn = kMicro * target.burn_um;
   }
   record.placement = (record.spot - record.wanted).norm();
   record.clearance = scene_->vesselDistance(pulse.spot) - 0.5 * burn;

@@ -76,7 +76,6 @@ class TrialJudge {
   Eigen::Vector2d ontoRetina(double x_px, double y_px) const;
   const simulation::RetinaPose& retinaAt(std::int64_t utime) const;
   void addPulses(TrialRecord& record) const;
-  const burn_target_t* targetOf(const Pulse& pulse) const;
   PulseRecord recordOf(const Pulse& pulse) const;
   void addTargets(TrialRecord& record) const;
   void addTip(TrialRecord& record) const;

@@ -213,13 +213,13 @@ TEST(ServoReplay, AndTheJudgeComeToAnEndWithABrokenTrial)
 
 TEST(ServoReplay, AReportIsMadeOfALaserTrialThatLostItsPlan)
 {
-  ShortTrial trial("task: laser\naid: manual\nduration_s: 8\n");
+  ShortTrial trial("task: laser\naid: manual\nduration_s: 20\n");
   trials::TrialJudge judge(trial.scene);
   for (const KeptEvent& kept : trial.run().events)
     if (kept.channel != "BURN_PLAN") judge.take(kept.event());
   const trials::TrialRecord record = judge.record();
-  ASSERT_FALSE(record.pulses.empty()) << "nothing was burnt";
-  EXPECT_EQ(record.pulses.front().placement, 0.0) << "nobody knows where it was meant to go";
+  EXPECT_GT(record.score.fired, 0) << "nothing was burnt";
+  EXPECT_TRUE(record.pulses.empty()) << "nobody knows where they were meant to go";
 }
 
 }  // namespace
