@@ -20,7 +20,7 @@ COLUMNS = ("scenario,seed,aid,motion,condition,retina,camera_hz,latency_ms,mean_
            "path_coverage,duration_s,tip_travel_mm,saturated_fraction,pose_rms_px,pose_rms_deg,tracked_fraction,targets,"
            "fired,refused,missed,placement_mean_um,placement_p95_um,placement_max_um,far_pulses,far_unexplained,"
            "burns_per_s,min_vessel_clearance_um,interlock_violations,hold_events,fault_events,wall_s,version,config_hash")
-STUDY = [TRACING, *settings(aid="none hard", duration_s=5, settling_s=1), "--seeds", "2"]
+STUDY = [TRACING, *settings(aid="none hard", duration_s=5), "--seeds", "2"]
 FOLDERS = [f"vessel_tracing/aid={aid}/seed_{seed:04}" for aid in ("hard", "none") for seed in (0, 1)]
 
 
