@@ -124,8 +124,13 @@ TEST(BurnRunTargets, NoTipGoesOutOfThePicture)
 TEST(BurnRunTargets, WhereThePictureLeavesTheTargetTheNextOneIsBurntFirst)
 {
   BurnScene scene(linePlan(2));
-  scene.run_ms(100);  // on the way to the first
-  const auto aside = [](BurnInput& in) { in.view.view_T_retina.x = 0.65e-3; };
+  scene.run_ms(20);  // on the way to the first
+  const auto aside = [](BurnInput& in) {
+    in.view.view_T_retina.x = 0.65e-3;
+    if (in.spot && in.spot->x() < 100e-6) in.spot.reset();
+  };
   for (int i = 0; i < 1500; ++i) scene.step(aside);
   EXPECT_EQ(scene.laser.pulses, (std::vector<int>{11}));
+  scene.run_ms(1500);
+  EXPECT_EQ(scene.laser.pulses, (std::vector<int>{11, 10}));
 }
