@@ -123,7 +123,6 @@ class TrackerReplay {
   std::int64_t period_us_;      // of frames, as their stamps have it
   std::int64_t last_sent_ = 0;  // us since 1970, the newest
   std::int64_t place_us_ = 0;   // of the event being processed, since the log's first
-  bool closed_ = false;
   TrackerFindings findings_;
 };
 
