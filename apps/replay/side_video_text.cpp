@@ -32,14 +32,14 @@ std::string namedOrBeside(const ReplayArguments& arguments)
 std::string videoOf(const ReplayArguments& arguments)
 {
   if (arguments.only == "servo") return "";
-  const std::string video = namedOrBeside(arguments);
+  std::string video = namedOrBeside(arguments);
   if (!video.empty() || (arguments.only.empty() && !arguments.offset)) return video;
   refuse(arguments, arguments.only == "tracker" ? "--only tracker" : "--offset");
 }
 
 std::string requiredVideoOf(const ReplayArguments& arguments)
 {
-  const std::string video = namedOrBeside(arguments);
+  std::string video = namedOrBeside(arguments);
   if (video.empty()) refuse(arguments, "overlay");
   return video;
 }
