@@ -22,18 +22,9 @@ namespace {
 
 using support::KeptEvent;
 using support::ShortTrial;
+using support::traced;
 using ::testing::HasSubstr;
 using Changes = std::vector<configuration::Assignment>;
-
-const ShortTrial& traced()
-{
-  static const ShortTrial trial = [] {
-    ShortTrial hard("task: trace\naid: hard\n");
-    hard.run();
-    return hard;
-  }();
-  return trial;
-}
 
 struct Replayed {
   explicit Replayed(const std::vector<KeptEvent>& events, const Changes& changes = {}) : servo(changes, comparison)

@@ -72,4 +72,15 @@ struct ShortTrial {
   }
 };
 
+/// A second of hard tracing, run once.
+inline const ShortTrial& traced()
+{
+  static const ShortTrial trial = [] {
+    ShortTrial hard("task: trace\naid: hard\n");
+    hard.run();
+    return hard;
+  }();
+  return trial;
+}
+
 }  // namespace eyeslam::support

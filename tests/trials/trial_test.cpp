@@ -25,18 +25,9 @@ namespace {
 
 using support::KeptEvent;
 using support::ShortTrial;
+using support::traced;
 using ::testing::Contains;
 using ::testing::HasSubstr;
-
-const ShortTrial& traced()
-{
-  static const ShortTrial trial = [] {
-    ShortTrial hard("task: trace\naid: hard\n");
-    hard.run();
-    return hard;
-  }();
-  return trial;
-}
 
 template <class Message>
 std::vector<Message> messagesOf(const ShortTrial& trial, const std::string& channel)
