@@ -75,13 +75,15 @@ bool isSmoothAt(const Way& way, std::size_t i)
 }
 
 // Where a wider vessel lies across the way, or so near to it that a map bends the way into it.
-std::vector<bool> crossings(const Way& way, double radius_px, const fixtures::VesselNetwork& network)
+std::vector<bool> crossings(const Way& way, double radius_px, const fixtures::VesselNetwork& network,
+                            const std::vector<double>& radii_px)
 {
   std::vector<bool> crossed(way.size());
   const double near_px = kBends * radius_px;
   const double near_sq = near_px * near_px;
-  for (const Vessel& vessel : network.vessels) {
-    if (radiusAt(vessel, 0.5) < kWider * radius_px) continue;
+  for (std::size_t v = 0; v < network.vessels.size(); ++v) {
+    if (radii_px[v] < kWider * radius_px) continue;
+    const Vessel& vessel = network.vessels[v];
     for (std::size_t i = 0; i < vessel.points.size(); i += kStride) {
       const fixtures::CenterlinePoint& other = vessel.points[i];
       const double reach_sq = near_sq + other.radius_px * (2.0 * near_px + other.radius_px);
@@ -94,11 +96,9 @@ std::vector<bool> crossings(const Way& way, double radius_px, const fixtures::Ve
 }
 
 // Where for `beyond_px` both ways nothing is in the way: no bend, no wider vessel, no place to keep away from.
-std::vector<bool> freeBothWays(const Way& way, double radius_px, const fixtures::VesselNetwork& network,
-                               const VesselWish& wish)
+std::vector<bool> freeBothWays(const Way& way, const std::vector<bool>& crossed, const VesselWish& wish)
 {
   const auto beyond = static_cast<std::size_t>(wish.beyond_px);  // points are a px apart
-  const std::vector<bool> crossed = crossings(way, radius_px, network);
   std::vector<bool> result(way.size());
   std::size_t free = 0;  // of the points before, without a gap
   for (std::size_t i = 0; i < way.size(); ++i) {
@@ -162,13 +162,14 @@ double crowding(const Way& way, const fixtures::VesselNetwork& network, double a
 ChosenVessel vesselToTrace(const fixtures::VesselNetwork& network, const VesselWish& wish)
 {
   const auto clear = clearPoints(network, wish);
+  std::vector<double> radii_px;
+  for (const Vessel& vessel : network.vessels) radii_px.push_back(radiusAt(vessel, 0.5));
   std::vector<Way> ways;
   std::vector<Run> runs;
   for (std::size_t i = 0; i < network.vessels.size(); ++i) {
     if (!isOneVessel(network.vessels[i], wish)) continue;
     ways.push_back(throughVessel(network, i, wish.longest_px + kBeyonds * wish.beyond_px));
-    const double radius = radiusAt(network.vessels[i], 0.5);
-    std::vector<bool> good = freeBothWays(ways.back(), radius, network, wish);
+    std::vector<bool> good = freeBothWays(ways.back(), crossings(ways.back(), radii_px[i], network, radii_px), wish);
     for (std::size_t k = 0; k < good.size(); ++k)
       good[k] = good[k] && clear.count({ways.back()[k].x(), ways.back()[k].y()}) > 0;
     addRuns(ways.back(), ways.size() - 1, good, wish, runs);
