@@ -29,10 +29,11 @@ class OverlayRun {
       : arguments_(arguments),
         selection_(selectionOf(arguments)),
         pass_(arguments, "drawing"),
-        rate_(replay::SideVideo(requiredVideoOf(arguments)).framesPerSecond()),
-        video_(requiredVideoOf(arguments), std::llround(arguments.offset.value_or(0.0) * rate_)),
+        video_(requiredVideoOf(arguments)),
         file_(arguments.out)
-  {}
+  {
+    video_.setShift(std::llround(arguments.offset.value_or(0.0) * video_.framesPerSecond()));
+  }
 
   void run()
   {
@@ -84,7 +85,8 @@ class OverlayRun {
     const std::int64_t utime = known && scene_.pose() ? scene_.pose()->frame.utime : 0;
     const std::int64_t since_us = known && utime > 0 ? utime - pass_.log().start() : due.since_us;
     const cv::Mat& picture = picture_.draw(image, due.pose, 1e-6 * static_cast<double>(since_us), scene_, known);
-    if (!encoded_) encoded_.emplace(file_.partialPath(), arguments_.out, picture.size(), rate_, kQuality);
+    if (!encoded_)
+      encoded_.emplace(file_.partialPath(), arguments_.out, picture.size(), video_.framesPerSecond(), kQuality);
     encoded_->add(picture);
     ++written_;
   }
@@ -106,7 +108,6 @@ class OverlayRun {
   const ReplayArguments& arguments_;
   replay::LogSelection selection_;
   LogPass pass_;
-  double rate_;
   replay::SideVideo video_;
   files::PartialFile file_;
   std::optional<files::EncodedVideo> encoded_;

@@ -21,6 +21,8 @@ class SideVideo {
   /// @throws files::FileError naming the file
   explicit SideVideo(const std::string& path, std::int64_t shift = 0);
 
+  /// Before the first picture of a pose.
+  void setShift(std::int64_t shift) { shift_ = shift; }
   void onPicture(Each each) { each_ = std::move(each); }
   /// The picture of a pose by its number; poses are asked for in rising order. Those between are read, and heard.
   /// @return empty where the video has none; valid until the next call

@@ -73,28 +73,20 @@ TrackerReplay::~TrackerReplay() = default;
 SortedEvent TrackerReplay::Held::event() const
 {
   SortedEvent result = sorted;
-  result.event.channel = channel;
-  result.event.data = bytes.data();
-  result.event.size = bytes.size();
+  result.event = message.event();
   return result;
-}
-
-TrackerReplay::Held TrackerReplay::hold(const SortedEvent& event)
-{
-  Held held{event, std::string(event.event.channel), {event.event.data, event.event.data + event.event.size}};
-  return held;
 }
 
 void TrackerReplay::take(const SortedEvent& event)
 {
   const bool vision = isVision(event.event.channel), scale = event.event.channel == kScale;
   if (vision || scale || each_) {
-    Held held = hold(event);
+    Held held(event);
     if ((vision || scale) && judge(event.event).standing == Standing::ours) {
       held.header = headerOf(event.event);
-      if (vision && session_ == 0 && held.channel == kPose) begin(held.header.session);
+      if (vision && session_ == 0 && held.message.channel == kPose) begin(held.header.session);
       held.vision = vision && held.header.session == session_;
-      if (vision && !held.vision && held.channel == kPose) ++findings_.other_runs;
+      if (vision && !held.vision && held.message.channel == kPose) ++findings_.other_runs;
     }
     if (held.vision) expectFrame(held);
     held_.push_back(std::move(held));
@@ -124,8 +116,10 @@ void TrackerReplay::begin(std::int64_t session)
 void TrackerReplay::expectFrame(const Held& held)
 {
   last_sent_ = std::max(last_sent_, held.header.utime_sent);
-  if (held.channel == kMap || held.header.seq < next_number_ || held.header.seq - next_number_ > kMostLost) return;
-  const auto stamp = held.channel == kPose ? stampIn<retina_pose_t>(held.bytes) : stampIn<tool_tip_t>(held.bytes);
+  if (held.message.channel == kMap || held.header.seq < next_number_ || held.header.seq - next_number_ > kMostLost)
+    return;
+  const auto stamp = held.message.channel == kPose ? stampIn<retina_pose_t>(held.message.bytes)
+                                                   : stampIn<tool_tip_t>(held.message.bytes);
   if (stamp) expect(held.header.seq, *stamp, held.header.utime_sent);
 }
 
@@ -179,13 +173,13 @@ bool TrackerReplay::mayProcess(const Held& held, std::int64_t newest) const
 void TrackerReplay::process(const Held& held)
 {
   place_us_ = held.sorted.since_us;
-  if (engine_ && held.channel == kScale && held.header.session != 0) {
-    engine_->link.send(held.channel, held.bytes.data(), held.bytes.size());
+  if (engine_ && held.message.channel == kScale && held.header.session != 0) {
+    engine_->link.send(held.message.channel, held.message.bytes.data(), held.message.bytes.size());
     drain(held.header.utime_sent);
   }
   if (held.vision) {
     lookUntil(held);
-    if (engine_->lock_step && held.channel == kPose) engine_->lock_step->send(held.header.utime_sent);
+    if (engine_->lock_step && held.message.channel == kPose) engine_->lock_step->send(held.header.utime_sent);
     drain(held.header.utime_sent);
     compare(held);
   } else if (each_) {
@@ -196,7 +190,7 @@ void TrackerReplay::process(const Held& held)
 void TrackerReplay::lookUntil(const Held& held)
 {
   const bool live = options_.order == TrackerOrder::live;
-  if (live && held.channel == kMap) return;
+  if (live && held.message.channel == kMap) return;
   const auto isDue = [&](const Look& due) {
     return live ? due.number <= held.header.seq : due.over <= held.header.utime_sent;
   };
@@ -244,10 +238,11 @@ void TrackerReplay::hear(const messaging::TappedEvent& event)
 // Messages are told apart by their numbers.
 void TrackerReplay::compare(const Held& held)
 {
-  Channel& channel = channels_.find(held.channel)->second;
+  Channel& channel = channels_.find(held.message.channel)->second;
   const files::LogEvent recorded = held.event().event;
   const auto eventOf = [&](const Computed& computed) {
-    return files::LogEvent{computed.number, recorded.utime, held.channel, computed.bytes.data(), computed.bytes.size()};
+    return files::LogEvent{computed.number, recorded.utime, held.message.channel, computed.bytes.data(),
+                           computed.bytes.size()};
   };
   std::deque<Computed>& computed = channel.computed;
   for (; !computed.empty() && computed.front().number < held.header.seq; computed.pop_front()) {
@@ -267,9 +262,9 @@ void TrackerReplay::compare(const Held& held)
 // When a live message was sent, and with which key, is no matter of the tracker's.
 void TrackerReplay::align(const Held& recorded, std::vector<std::uint8_t>& bytes) const
 {
-  if (options_.order != TrackerOrder::live || bytes.size() != recorded.bytes.size()) return;
-  std::copy_n(recorded.bytes.begin() + kTimeSentAt, kTimeBytes, bytes.begin() + kTimeSentAt);
-  std::copy(recorded.bytes.end() - kTagBytes, recorded.bytes.end(), bytes.end() - kTagBytes);
+  if (options_.order != TrackerOrder::live || bytes.size() != recorded.message.bytes.size()) return;
+  std::copy_n(recorded.message.bytes.begin() + kTimeSentAt, kTimeBytes, bytes.begin() + kTimeSentAt);
+  std::copy(recorded.message.bytes.end() - kTagBytes, recorded.message.bytes.end(), bytes.end() - kTagBytes);
 }
 
 }  // namespace eyeslam::replay

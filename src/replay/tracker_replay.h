@@ -12,6 +12,7 @@
 #include "eyeslam/messaging/event_tap.h"
 #include "eyeslam/messaging/link.h"
 #include "eyeslam/replay/comparison.h"
+#include "eyeslam/replay/kept_message.h"
 #include "eyeslam/replay/side_video.h"
 #include "eyeslam/replay/sorted_log.h"
 #include "eyeslam/vision/lock_step_tracker.h"
@@ -75,9 +76,9 @@ class TrackerReplay {
     std::vector<std::uint8_t> bytes;
   };
   struct Held {
-    SortedEvent sorted;
-    std::string channel;
-    std::vector<std::uint8_t> bytes;
+    explicit Held(const SortedEvent& event) : sorted(event), message(event.event) {}
+    SortedEvent sorted;  // but for its bytes, which are the message's
+    KeptMessage message;
     bool vision = false;                // of the tracker that is replayed
     messaging::MessageHeader header{};  // of messages that the replay needs
     SortedEvent event() const;
@@ -94,7 +95,6 @@ class TrackerReplay {
     bool known = true;       // its stamp is the log's
   };
 
-  static Held hold(const SortedEvent& event);
   void begin(std::int64_t session);
   void expectFrame(const Held& held);
   void expect(std::int64_t number, const messaging::FrameStamp& stamp, std::int64_t ready);

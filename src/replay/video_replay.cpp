@@ -17,11 +17,11 @@ constexpr const char* kTracker = "eyeslam-track";
 constexpr const char* kOverlay = "overlay.";  // keys of the program's pictures, of no matter here
 constexpr std::int64_t kTimesAtTheEnd = 2;    // that H.264 leaves out
 
-double rateOf(const std::string& video)
+double rateOf(const SideVideo& video, const std::string& path)
 {
-  const double rate = SideVideo(video).framesPerSecond();
+  const double rate = video.framesPerSecond();
   if (rate > 0.0 && std::isfinite(rate)) return rate;
-  throw ReplayError(fmt::format("{}: says no frame rate; a video of a constant one is wanted", video));
+  throw ReplayError(fmt::format("{}: says no frame rate; a video of a constant one is wanted", path));
 }
 
 tracking::TrackerOptions liveConfiguration(const mark_t& mark, const std::vector<configuration::Assignment>& changes)
@@ -51,10 +51,11 @@ VideoReplay::VideoReplay(VideoReplayOptions options, Comparison& comparison, Tra
     : options_(std::move(options)),
       comparison_(comparison),
       each_(std::move(each)),
-      shift_(std::llround(options_.offset_s.value_or(0.0) * rateOf(options_.video))),
-      video_(options_.video, shift_),
+      video_(options_.video),
+      shift_(std::llround(options_.offset_s.value_or(0.0) * rateOf(video_, options_.video))),
       measured_(video_.framesPerSecond(), shift_)
 {
+  video_.setShift(shift_);
   video_.onPicture([this](std::int64_t number, const cv::Mat& image) { measured_.addPicture(number, image); });
 }
 

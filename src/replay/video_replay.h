@@ -57,8 +57,8 @@ class VideoReplay final : public RecomputedPart {
   VideoReplayOptions options_;
   Comparison& comparison_;
   TrackerReplay::Each each_;
-  std::int64_t shift_;
   SideVideo video_;
+  std::int64_t shift_;
   VideoOffset measured_;
   std::optional<TrackerReplay> replay_;
   std::optional<OffsetEstimate> offset_;
