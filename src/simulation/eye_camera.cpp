@@ -79,6 +79,12 @@ double umPerPx(const EyeCameraOptions& options, std::uint64_t seed)
   return options.widening * umPerPixel(condition(options.condition).tissue, sequence);
 }
 
+SpecularBlooms specularBlooms(const EyeCameraOptions& options, std::uint64_t seed)
+{
+  return {condition(options.condition).microscope.blooms, cv::Size(options.width, options.height),
+          options.width / kUsualWidth_px, options.duration_s, seed};
+}
+
 EyeCamera::EyeCamera(const EyeCameraOptions& options, const Fundus& fundus, std::uint64_t seed)
     : EyeCamera(options, withExposure(condition(options.condition), options),
                 Scene::plan(options, condition(options.condition), fundus, seed), seed)

@@ -50,4 +50,7 @@ class EyeCamera {
   RenderedFrame last_;
 };
 
+/// Those that such a camera shows with this seed.
+SpecularBlooms specularBlooms(const EyeCameraOptions& options, std::uint64_t seed);
+
 }  // namespace eyeslam::simulation

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kTwoPi = 6.28318530717958647693;
 constexpr double kGlowReach = 4.5;  // of the core's radius; beyond it the glow is below a grey level
+constexpr double kWhitens = 3.3;    // of it; from here on the retina's own colour prevails
 
 double fading(double t, double from_s, double to_s)
 {
@@ -50,6 +51,14 @@ void SpecularBlooms::addTo(cv::Mat& picture, double t) const
                                                  std::sin(kTwoPi * 1.3 * bloom.hz * t + bloom.phase_y));
     addGlow(picture, centre, bloom.radius * (0.7 + 0.3 * bright), cv::Scalar::all(bright));
   }
+}
+
+bool SpecularBlooms::mayHide(cv::Point2d place, double within_px) const
+{
+  return std::any_of(blooms_.begin(), blooms_.end(), [&](const Bloom& bloom) {
+    const double away = std::hypot(place.x - bloom.place.x, place.y - bloom.place.y);
+    return away < std::sqrt(2.0) * bloom.wander + kWhitens * bloom.radius + within_px;
+  });
 }
 
 void addGlow(cv::Mat& picture, cv::Point2d centre, double radius, const cv::Scalar& colour)

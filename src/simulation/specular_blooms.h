@@ -37,6 +37,8 @@ class SpecularBlooms {
 
   /// Adds their light at an instant to a picture (CV_32FC4, white = 1).
   void addTo(cv::Mat& picture, double t_s) const;
+  /// Whether one may ever whiten what lies this near to a place of the view, px.
+  bool mayHide(cv::Point2d place, double within_px) const;
 
  private:
   struct Bloom {

@@ -33,6 +33,9 @@ constexpr double kRetina_mm[] = {18.0, 14.0};  // room for a view beside the dis
 constexpr double kDiscRoom = 400e-6;           // m
 constexpr double kDiscBrightness = 1.3;        // of the mean
 constexpr double kSeam = 1.25;                 // of half a view, that must stay on the retina
+constexpr double kTurn = 0.2;         // of half a view, so far is the eye turned to get reflections out of the way
+constexpr int kTurns = 4;             // steps of it each way
+constexpr double kEyeMoves = 150e-6;  // m, under reflections that stay
 
 cv::Mat read(const std::string& path, int mode)
 {
@@ -101,7 +104,7 @@ TrialScene::TrialScene(const TrialSetting& setting, std::uint64_t seed)
       um_per_px_(simulation::umPerPx(setting.hardware.camera, seed))
 {
   const Scenario& scenario = setting.scenario;
-  chooseVessel(1e-3 * scenario.length_mm);
+  chooseVessel(1e-3 * scenario.length_mm, scenario.task == "trace", seed);
   const simulation::EyeCamera camera(camera_, fundus_, seed);
   const double px = kMicro * um_per_px_;
   calibre_px_ = camera.vessels();
@@ -123,8 +126,9 @@ TrialScene::TrialScene(const TrialSetting& setting, std::uint64_t seed)
   centreline_ = path_;
 }
 
-// He puts the middle of the vessel under the microscope; the path is about that, for now.
-void TrialScene::chooseVessel(double longest)
+// He puts the middle of the vessel under the microscope, or turns the eye somewhat for what he is to follow; the path
+// is about the view's middle, for now.
+void TrialScene::chooseVessel(double longest, bool follows_vessel, std::uint64_t seed)
 {
   const double px = kMicro * fundus_.um_per_px;
   fixtures::VesselGraph graph;
@@ -153,11 +157,38 @@ void TrialScene::chooseVessel(double longest)
     const Eigen::Vector2d from_middle = px * (place - middle);
     centreline_.emplace_back(from_middle.x(), from_middle.y(), 0.0);
   }
+  Eigen::Vector2d view = px * middle;
+  if (camera_.view_x_mm >= 0.0 && camera_.view_y_mm >= 0.0) {
+    view = 1e-3 * Eigen::Vector2d(camera_.view_x_mm, camera_.view_y_mm);
+  } else {
+    if (follows_vessel) view += besideReflections(kTurn * half_view, seed);
+    camera_.view_x_mm = 1e3 * view.x();
+    camera_.view_y_mm = 1e3 * view.y();
+  }
+  for (Eigen::Vector3d& place : centreline_) place.head<2>() += px * middle - view;
   const auto first = centreline_.begin() + static_cast<std::ptrdiff_t>(chosen.first);
   path_.assign(first, first + static_cast<std::ptrdiff_t>(chosen.count));
-  if (camera_.view_x_mm >= 0.0 && camera_.view_y_mm >= 0.0) return;
-  camera_.view_x_mm = 1e3 * px * middle.x();
-  camera_.view_y_mm = 1e3 * px * middle.y();
+}
+
+// Where the view's middle should lie from the vessel's, so that little of the vessel is under reflections, which stay
+// while the eye is turned.
+Eigen::Vector2d TrialScene::besideReflections(const Eigen::Vector2d& furthest, std::uint64_t seed) const
+{
+  const simulation::SpecularBlooms blooms = simulation::specularBlooms(camera_, seed);
+  const double px = kMicro * um_per_px_;
+  const cv::Point2d centre = simulation::imageCentre(camera_);
+  const auto hidden = [&](const Eigen::Vector2d& view) {
+    return std::count_if(centreline_.begin(), centreline_.end(), [&](const Eigen::Vector3d& place) {
+      const Eigen::Vector2d seen = (place.head<2>() - view) / px;
+      return blooms.mayHide(centre + cv::Point2d(seen.x(), seen.y()), kEyeMoves / px);
+    });
+  };
+  std::vector<Eigen::Vector2d> views;
+  for (int y = -kTurns; y <= kTurns; ++y)
+    for (int x = -kTurns; x <= kTurns; ++x) views.emplace_back(furthest.cwiseProduct(Eigen::Vector2d(x, y)) / kTurns);
+  std::stable_sort(views.begin(), views.end(), [](const auto& a, const auto& b) { return a.norm() < b.norm(); });
+  const auto hides_less = [&](const auto& a, const auto& b) { return hidden(a) < hidden(b); };
+  return *std::min_element(views.begin(), views.end(), hides_less);
 }
 
 Eigen::Vector2d TrialScene::pixelOf(const Eigen::Vector2d& place) const

@@ -41,7 +41,8 @@ class TrialScene {
  private:
   Eigen::Vector2d pixelOf(const Eigen::Vector2d& place) const;
 
-  void chooseVessel(double longest);
+  void chooseVessel(double longest, bool follows_vessel, std::uint64_t seed);
+  Eigen::Vector2d besideReflections(const Eigen::Vector2d& furthest, std::uint64_t seed) const;
 
   simulation::Fundus fundus_;
   simulation::EyeCameraOptions camera_;
