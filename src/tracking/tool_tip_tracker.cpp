@@ -25,6 +25,11 @@ constexpr double kBlind_units = 6.0;
 constexpr double kGreySigma_widths = 1.0;
 constexpr double kContrastPower = 1.5;
 
+constexpr double kSharpFall = 3.5;  // steps from three quarters of the steel's blue to one; a bloom's flank has more
+constexpr double kGlowStep_widths = 0.5;  // rings on which a bloom's white is looked for
+constexpr int kGlowRings = 3;
+constexpr int kGlowDirections = 8;
+
 // Samples about the rough end, in units.
 constexpr int kBehind = 6;
 constexpr int kAhead = 16;  // past the aiming beam
@@ -93,6 +98,20 @@ std::optional<ToolTipTracker::End> ToolTipTracker::findEnd(const TintSampler& im
   return bloom ? hiddenEnd(image, axis, last_pure, last) : seenEnd(image, axis, last);
 }
 
+// What a bloom's flank may add to the error of an end that is not sharp.
+double ToolTipTracker::doubtInGlow(const TintSampler& image, const ShaftAxis& axis, double along) const
+{
+  for (int ring = 1; ring <= kGlowRings; ++ring) {
+    const double radius = ring * kGlowStep_widths * axis.width;
+    for (int i = 0; i < kGlowDirections; ++i) {
+      const double angle = 2.0 * M_PI * i / kGlowDirections;
+      const Eigen::Vector2d at = axis.at(along + radius * std::cos(angle), radius * std::sin(angle));
+      if (image.contains(at) && image(at).blue > options_.saturated) return radius + kGlowStep_widths * axis.width;
+    }
+  }
+  return 0.0;
+}
+
 // The end lies where the blue has fallen halfway to that of the retina ahead. Blue alone: an aiming beam adds red only.
 ToolTipTracker::End ToolTipTracker::seenEnd(const TintSampler& image, const ShaftAxis& axis, double rough) const
 {
@@ -106,8 +125,13 @@ ToolTipTracker::End ToolTipTracker::seenEnd(const TintSampler& image, const Shaf
   const double sigma = kSharp_units * step / std::pow(std::max(contrast, 0.05), kContrastPower);
   for (int i = 1 - kBehind; i <= kAhead; ++i) {
     const float before = blue[index(i - 1)], now = blue[index(i)];
-    if (before > half && now <= half)
-      return {rough + step * (i - 1.0 + (before - half) / (before - now)), sigma * sigma};
+    if (before <= half || now > half) continue;
+    const double along = rough + step * (i - 1.0 + (before - half) / (before - now));
+    int above = i - 1, below = i;
+    while (above > -kBehind && blue[index(above)] < (half + steel) / 2.0F) --above;
+    while (below < kAhead && blue[index(below)] > (half + retina) / 2.0F) ++below;
+    const double doubt = below - above > kSharpFall ? doubtInGlow(image, axis, along) : 0.0;
+    return {along, sigma * sigma + doubt * doubt};
   }
   return {rough, kBlind_units * kBlind_units * step * step};
 }

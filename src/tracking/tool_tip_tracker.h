@@ -53,6 +53,7 @@ class ToolTipTracker {
   std::optional<End> findEnd(const TintSampler& image, const ShaftAxis& axis) const;
   End seenEnd(const TintSampler& image, const ShaftAxis& axis, double rough) const;
   End hiddenEnd(const TintSampler& image, const ShaftAxis& axis, double from, double to) const;
+  double doubtInGlow(const TintSampler& image, const ShaftAxis& axis, double along) const;
   Tint across(const TintSampler& image, const ShaftAxis& axis, double along) const;
   void report(const ShaftAxis& axis, const End& end);
 

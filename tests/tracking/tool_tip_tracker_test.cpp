@@ -67,6 +67,19 @@ class Scene {
     cv::circle(picture_, at, radius, cv::Scalar(250, 252, 254), -1, cv::LINE_AA);
     return *this;
   }
+  /// As the rendered sequences have them: white in the middle, with a glow that fades over four radii.
+  Scene& glow(cv::Point2d at, double radius)
+  {
+    for (int y = 0; y < picture_.rows; ++y) {
+      for (int x = 0; x < picture_.cols; ++x) {
+        const double square = ((x - at.x) * (x - at.x) + (y - at.y) * (y - at.y)) / (radius * radius);
+        const double light = 255.0 * (1.03 * std::exp(-0.28 * square) + 0.8 * std::exp(-1.4 * square));
+        auto& pixel = picture_.at<cv::Vec3b>(y, x);
+        for (int c = 0; c < 3; ++c) pixel[c] = cv::saturate_cast<std::uint8_t>(pixel[c] + light);
+      }
+    }
+    return *this;
+  }
   Scene& beam(cv::Point at, int radius)
   {
     cv::Mat light = cv::Mat::zeros(picture_.size(), CV_8UC3);
@@ -201,6 +214,28 @@ TEST(ToolTipTracker, SaysHowLittleItKnowsWhereABloomHidesTheTip)
   EXPECT_GT(std::sqrt(tip.covariance(0, 0)), 5.0);  // along the shaft
   EXPECT_LT(std::sqrt(tip.covariance(1, 1)), 2.0);  // across it is as good as ever
   EXPECT_LT(error.dot(tip.covariance.inverse() * error), 9.0);
+}
+
+// Its flank is as grey as steel, and not as white as its middle.
+TEST(ToolTipTracker, SaysHowLittleItKnowsWhereABloomGlowsBesideTheTip)
+{
+  const Instrument tool{{430.0, 310.0}, 140.0, 32.0};
+  double farthest = 0.0;
+  for (const double radius : {6.0, 8.0, 11.0, 15.0}) {
+    for (int turn = 0; turn < 24; ++turn) {
+      for (const double apart : {0.5, 1.0, 1.4, 1.8, 2.2, 2.6, 3.0}) {
+        const double angle = turn * CV_PI / 12.0;
+        const cv::Point2d at = tool.tip + apart * radius * cv::Point2d(std::cos(angle), std::sin(angle));
+        const ToolTip tip = find(Scene().instrument(tool).glow(at, radius).blurred());
+        if (!tip.present) continue;
+        const Eigen::Vector2d error(tip.x_px - tool.tip.x, tip.y_px - tool.tip.y);
+        farthest = std::max(farthest, error.norm());
+        EXPECT_LT(error.dot(tip.covariance.inverse() * error), 16.0)
+            << error.norm() << " px, glow of " << radius << " px at " << at;
+      }
+    }
+  }
+  EXPECT_GT(farthest, 8.0) << "no glow led it on, so that this proves nothing";
 }
 
 TEST(ToolTipTracker, ReadsSixteenBitsAlike)
