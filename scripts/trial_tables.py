@@ -19,6 +19,7 @@ STUDIES = {
     "tracing_120": ("vessel_tracing", ("aid=none hard", "motion=in_situ jerky", *FAST)),
     "laser_120": ("laser_rings", ("aid=automated", *FAST)),
 }
+CALIBRES = ("50_um_or_more", "20_to_50_um", "below_20_um")
 IN_SITU = ("tracing", "tracing_soft", "laser")  # of these alone the table is useful
 
 
@@ -118,6 +119,20 @@ def total(trials, name):
     return int(sum(trial[name] for trial in trials if trial.row[name]))
 
 
+def touching(trials, calibre):
+    return f"{total_of(trials, 'burns_on_vessels_' + calibre)} of {total(trials, 'fired')}"
+
+
+def total_of(trials, name):
+    return int(sum(trial.more.get("more", {}).get(name, 0) for trial in trials))
+
+
+def coverage(trials, calibre):
+    """Mean over the trials that had such a vessel in view."""
+    shares = [trial.more.get("more", {}).get("map_coverage_" + calibre) for trial in trials]
+    return statistics.fmean([share for share in shares if share is not None] or [0.0])
+
+
 def laser_rows(slow, fast):
     burnt = [trial for trial in slow + fast if trial.row["placement_mean_um"]]
     still, jerky = (chosen(burnt, "automated", motion) for motion in ("in_situ", "jerky"))
@@ -143,8 +158,11 @@ def laser_rows(slow, fast):
     aided = still + jerky + quick
     yield "of these without a motion of 40 um", str(total(aided, "far_unexplained")), "0", "0"
     yield "pulses with an interlock open", str(total(aided, "interlock_violations")), "0", "0"
-    touched = sum(trial["min_vessel_clearance_um"] < 0.0 for trial in aided)
-    yield "trials in which a burn touches any true vessel", f"{touched} of {len(aided)}", "", ""
+    yield "burns that touch a true vessel of 50 um or more", touching(aided, "50_um_or_more"), "", "0"
+    for calibre, words in (("20_to_50_um", "20 to 50 um"), ("below_20_um", "below 20 um")):
+        yield f"burns that touch one of {words}", touching(aided, calibre), "", ""
+    yield ("the map has, of the area of true vessels of these calibres",
+           " / ".join(f"{100.0 * coverage(aided, calibre):.0f} %" for calibre in CALIBRES), "", "")
 
 
 def table(rows):

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -229,24 +230,30 @@ ReportTable trialTable(const StudyGroup& group)
 
 ReportTable touchTable(const StudyGroup& group)
 {
-  const std::vector<double> edges{0.0, 20e-6, 50e-6, 1.0};  // m; from 50 um on none is allowed
   ReportTable table{
       {"aid", "burns", "touch none (%)", "below 20 \u00b5m (%)", "20 to 50 \u00b5m (%)", "50 \u00b5m or more (%)"}, {}};
   for (const AidTrials& aid : group.aids) {
-    double burns = 0.0;
-    std::vector<double> touched(edges.size(), 0.0);
+    double burns = 0.0, clear = 0.0;
+    std::array<double, kCalibreClasses.size()> touched{}, covered{}, maps{};
     for (const TrialRecord* trial : aid.trials) {
       for (const PulseRecord& pulse : trial->pulses) {
         burns += 1.0;
-        const auto edge = pulse.touched_calibre > 0.0
-                              ? std::upper_bound(edges.begin(), edges.end(), pulse.touched_calibre)
-                              : edges.begin();
-        touched[std::min(static_cast<std::size_t>(edge - edges.begin()), touched.size() - 1)] += 1.0;
+        (pulse.touched_calibre > 0.0 ? touched[calibreClass(pulse.touched_calibre)] : clear) += 1.0;
+      }
+      for (std::size_t kind = 0; kind < covered.size(); ++kind) {
+        if (!trial->map.coverage[kind]) continue;
+        covered[kind] += *trial->map.coverage[kind];
+        maps[kind] += 1.0;
       }
     }
     if (burns == 0.0) continue;
-    table.rows.push_back({styleOf(aid.aid).name, fmt::format("{:.0f}", burns)});
+    table.rows.push_back(
+        {styleOf(aid.aid).name, fmt::format("{:.0f}", burns), fmt::format("{:.2f}", 100.0 * clear / burns)});
     for (const double count : touched) table.rows.back().push_back(fmt::format("{:.2f}", 100.0 * count / burns));
+    if (std::all_of(maps.begin(), maps.end(), [](double count) { return count == 0.0; })) continue;
+    table.rows.push_back({"its map has, of such vessels' area", "", ""});
+    for (std::size_t kind = 0; kind < covered.size(); ++kind)
+      table.rows.back().push_back(maps[kind] > 0.0 ? fmt::format("{:.1f}", 100.0 * covered[kind] / maps[kind]) : "");
   }
   return table;
 }

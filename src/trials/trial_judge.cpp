@@ -7,6 +7,7 @@
 
 #include "eyeslam/messaging/decoding.h"
 #include "eyeslam/messaging/record_messages.h"
+#include "eyeslam/messaging/retina_messages.h"
 #include "eyeslam/messaging/servo_messages.h"
 #include "eyeslam/retina/reason.h"
 #include "eyeslam/trials/lock_step_time.h"
@@ -48,7 +49,8 @@ void TrialJudge::take(const files::LogEvent& event)
       takeAs<servo_status_t>(event, "SERVO_STATUS", [this](const servo_status_t& status) { take(status); }) ||
       takeAs<laser_state_t>(event, "LASER_STATE", [this](const laser_state_t& state) { laser_ = state; }) ||
       takeAs<operator_t>(event, "OPERATOR", [this](const operator_t& wish) { wish_ = wish; }) ||
-      takeAs<burn_plan_t>(event, "BURN_PLAN", [this](const burn_plan_t& plan) { take(plan); });
+      takeAs<burn_plan_t>(event, "BURN_PLAN", [this](const burn_plan_t& plan) { take(plan); }) ||
+      takeAs<vessel_map_t>(event, "VESSEL_MAP", [this](const vessel_map_t& tile) { take(tile); });
 }
 
 void TrialJudge::take(const mark_t& mark)
@@ -157,6 +159,12 @@ void TrialJudge::take(const burn_plan_t& plan)
   if (plan.state == burn_plan_t::IN_FORCE) plan_ = plan;
 }
 
+void TrialJudge::take(const vessel_map_t& tile)
+{
+  vessel_map_t checked{};
+  if (setting_ && messaging::read(tile, checked) == retina::Reason::none) maps_.add(checked);
+}
+
 // What the laser itself cannot know: that somebody allowed it.
 bool TrialJudge::mayEmit() const
 {
@@ -186,6 +194,12 @@ Eigen::Vector2d TrialJudge::ontoRetina(double x_px, double y_px) const
   const Eigen::Vector2d map_px(x_px, y_px), centre = scene_->middle().head<2>() / px;
   const bool own_map = !setting_->scenario.isManual() && first_frame_;  // a tracker's begins with its first frame
   return px * (own_map ? Eigen::Vector2d(centre + *first_frame_ * (map_px - centre)) : map_px);
+}
+
+Eigen::Vector2d TrialJudge::ontoMap(const Eigen::Vector2d& retina_px) const
+{
+  const Eigen::Vector2d centre = scene_->middle().head<2>() / (kMicro * um_per_px_);
+  return centre + first_frame_->inverse() * (retina_px - centre);
 }
 
 const simulation::RetinaPose& TrialJudge::retinaAt(std::int64_t utime) const

@@ -13,6 +13,7 @@
 #include "eyeslam/files/log_event.h"
 #include "eyeslam/laser_state_t.hpp"
 #include "eyeslam/mark_t.hpp"
+#include "eyeslam/messaging/map_assembler.h"
 #include "eyeslam/operator_t.hpp"
 #include "eyeslam/retina/pose2.h"
 #include "eyeslam/retina_pose_t.hpp"
@@ -65,6 +66,7 @@ class TrialJudge {
   void take(const retina_pose_t& pose, std::int64_t utime);
   void take(const servo_status_t& status);
   void take(const burn_plan_t& plan);
+  void take(const vessel_map_t& tile);
   void watchSpeed(const truth_t& truth);
   void judgeTip(const truth_t& truth);
   void followPulse(const truth_t& truth);
@@ -74,12 +76,14 @@ class TrialJudge {
   bool counts() const { return counts_from_ != 0 && !over_; }
 
   Eigen::Vector2d ontoRetina(double x_px, double y_px) const;
+  Eigen::Vector2d ontoMap(const Eigen::Vector2d& retina_px) const;
   const simulation::RetinaPose& retinaAt(std::int64_t utime) const;
   void addPulses(TrialRecord& record) const;
   PulseRecord recordOf(const Pulse& pulse) const;
   void addTargets(TrialRecord& record) const;
   void addTip(TrialRecord& record) const;
   void addPoses(TrialRecord& record) const;
+  void addMap(TrialRecord& record) const;
   void addVerdict(TrialRecord& record) const;
 
   std::shared_ptr<const TrialScene> scene_;  // shared with who made it
@@ -113,6 +117,7 @@ class TrialJudge {
   std::vector<Pulse> pulses_;
   bool emitting_ = false;
   std::optional<burn_plan_t> plan_;
+  messaging::MapAssembler maps_;
 };
 
 }  // namespace eyeslam::trials

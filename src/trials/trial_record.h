@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "eyeslam/trials/jump_recovery.h"
+#include "eyeslam/trials/map_coverage.h"
 #include "eyeslam/trials/trial_score.h"
 
 namespace eyeslam::trials {
@@ -70,6 +71,7 @@ struct TrialRecord {
   std::vector<Jump> jumps;            ///< jerks and saccades, and when the tip was back; empty of laser trials
   std::vector<PulseRecord> pulses;
   std::vector<PlannedTarget> targets;
+  MapCoverage map;  ///< of the map at the end; empty where nothing mapped
   std::vector<TrialEvent> events;
   double fastest_tip = 0.0;                ///< m/s, from the start, calibration included
   double worst_pivot = 0.0;                ///< m, of the shaft from the commanded centre of motion

@@ -92,6 +92,7 @@ TrialRecord TrialJudge::record() const
     addTip(record);
   }
   addPoses(record);
+  addMap(record);
   addVerdict(record);
   return record;
 }
@@ -135,6 +136,17 @@ void TrialJudge::addPoses(TrialRecord& record) const
   record.score.pose_rms_deg = errorFigures(degrees).rms;
 }
 
+// As it is at the end; a plan is judged anew by each that comes.
+void TrialJudge::addMap(TrialRecord& record) const
+{
+  if (!first_frame_ || maps_.map().empty()) return;
+  record.map = compareMap(maps_.map(), scene_->trueMap(), [this](const Eigen::Vector2d& px) { return ontoMap(px); });
+  for (std::size_t kind = 0; kind < kCalibreClasses.size(); ++kind)
+    if (record.map.coverage[kind])
+      record.score.more.emplace_back(std::string("map_coverage_") + kCalibreClasses[kind], *record.map.coverage[kind]);
+  if (record.map.precision) record.score.more.emplace_back("map_precision", *record.map.precision);
+}
+
 void TrialJudge::addTargets(TrialRecord& record) const
 {
   if (!plan_) return;
@@ -175,6 +187,12 @@ void TrialJudge::addPulses(TrialRecord& record) const
   const double took_s = record.pulses.back().t_s - record.pulses.front().t_s;
   if (took_s > 0.0) score.burns_per_s = static_cast<double>(pulses_.size() - 1) / took_s;
   score.more.emplace_back("waited_for_first_burn_s", record.pulses.front().t_s);
+  for (std::size_t kind = 0; kind < kCalibreClasses.size(); ++kind) {
+    const auto touching = std::count_if(record.pulses.begin(), record.pulses.end(), [kind](const PulseRecord& pulse) {
+      return pulse.touched_calibre > 0.0 && calibreClass(pulse.touched_calibre) == kind;
+    });
+    score.more.emplace_back(std::string("burns_on_vessels_") + kCalibreClasses[kind], static_cast<double>(touching));
+  }
 }
 
 void TrialJudge::addVerdict(TrialRecord& record) const
