@@ -13,9 +13,10 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "bench/child_program.h"
 #include "bench/live_bench.h"
+#include "command_line/child_program.h"
 #include "command_line/progress.h"
+#include "command_line/scratch_folder.h"
 #include "eyeslam/servo/registration_desk.h"
 #include "link/program_link.h"
 #include "real_time/scheduling.h"
@@ -27,28 +28,6 @@ namespace {
 constexpr int kFrames = 60;           // rendered before: 2 s of motion, and back
 constexpr double kPatience_s = 60.0;  // until the servo moves the tip by what it sees
 constexpr std::int64_t kExpiry_us = 50'000;
-
-/// A folder of one's own, gone at the end.
-class ScratchFolder {
- public:
-  ScratchFolder()
-  {
-    std::string pattern = (std::filesystem::temp_directory_path() / "eyeslam_bench_XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder can be made");
-    folder_ = pattern;
-  }
-  ~ScratchFolder()
-  {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
- private:
-  std::filesystem::path folder_;
-};
 
 double quantile(std::vector<double> values, double q)
 {
@@ -167,7 +146,7 @@ struct Outcome {
 
 Outcome measured(const LiveInputs& inputs)
 {
-  const ScratchFolder scratch;
+  const ScratchFolder scratch("eyeslam_bench");
   const simulation::HardwareOptions options;
   const std::string folder = inputs.programs.empty() ? programFolder() : inputs.programs;
   const std::string url = fmt::format("udpm://239.255.76.67:{}?ttl=0", 20'000 + getpid() % 40'000);

@@ -9,7 +9,7 @@
 #include "eyeslam/messaging/retina_messages.h"
 #include "eyeslam/messaging/subscription.h"
 #include "real_time/real_time_loop.h"
-#include "sim/frame_feed.h"
+#include "real_time/frame_feed.h"
 #include "sim/live_world.h"
 #include "sim/sim_arguments.h"
 

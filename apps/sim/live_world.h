@@ -11,7 +11,7 @@
 #include "eyeslam/messaging/subscription.h"
 #include "eyeslam/simulation/hardware.h"
 #include "real_time/real_time_loop.h"
-#include "sim/frame_feed.h"
+#include "real_time/frame_feed.h"
 #include "sim/live_task.h"
 #include "sim/tip_errors.h"
 

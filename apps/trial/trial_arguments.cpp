@@ -16,6 +16,7 @@ const char* const kExamples =
     "  eyeslam-trial scenarios/vessel_tracing.yaml --out results\n"
     "  eyeslam-trial scenarios/vessel_tracing.yaml --set 'aid=none hard' --seeds 20 --out study\n"
     "  eyeslam-trial scenarios/*.yaml --set duration_s=5 --out everything\n"
+    "  eyeslam-trial scenarios/vessel_tracing.yaml --set aid=hard --real-time --out live\n"
     "  eyeslam-trial scenarios/laser_rings.yaml --set retina=fundus.png --set motion=jerky --out jerky\n"
     "  eyeslam-trial scenarios/laser_rings.yaml --dump-config > mine.yaml\n";
 
@@ -55,6 +56,9 @@ void addOptions(CLI::App& app, TrialArguments& a)
   app.add_option("--shard", a.shard,
                  "Run the I-th of N parts of the list of trials; tables of all parts make the whole")
       ->type_name("I/N");
+  app.add_flag("--real-time", a.real_time,
+               "As fast as time passes, with eyeslam-track and eyeslam-servo as programs of their own, one trial after "
+               "the other");
   app.add_flag("--video", a.video, "Keep what the camera saw, lossless, beside the log of each trial with an aid");
   app.add_flag("--no-logs", a.no_logs, "Keep scores and reports alone");
   app.add_flag("--dump-config{yaml}", a.dump,
@@ -69,6 +73,8 @@ void check(const TrialArguments& arguments)
     throw UsageError("SCENARIO is missing; a file such as scenarios/vessel_tracing.yaml is wanted");
   if (arguments.out.empty()) throw UsageError("--out is missing; a folder for the results is wanted");
   if (arguments.video && arguments.no_logs) throw UsageError("--video: stands beside the log; leave --no-logs out");
+  if (arguments.real_time && arguments.jobs > 1)
+    throw UsageError("--jobs: trials in real time need the computer for themselves; leave it out");
   std::set<std::string> names;
   for (const std::string& path : arguments.scenarios) {
     if (!names.insert(std::filesystem::path(path).stem().string()).second)

@@ -19,6 +19,7 @@ struct TrialArguments {
   std::optional<std::int64_t> seed;    ///< this alone; without both: 0
   int jobs = 0;                        ///< trials at a time; 0 = as many as there are cores
   std::string shard = "1/1";
+  bool real_time = false;  ///< with the real programs beside it, one trial after the other
   bool video = false, no_logs = false, quiet = false;
   std::vector<std::string> settings;  ///< "group.key=value"
   std::string dump;                   ///< "yaml", "markdown", or empty

@@ -20,6 +20,7 @@ constexpr std::chrono::milliseconds kWatch{50};
 std::size_t threadsFor(const TrialArguments& arguments, std::size_t trials)
 {
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  if (arguments.real_time) return 1;
   const std::size_t wanted = arguments.jobs > 0 ? static_cast<std::size_t>(arguments.jobs) : cores;
   return std::min(wanted, trials);
 }

@@ -8,6 +8,7 @@
 #include "eyeslam/trials/trial.h"
 #include "eyeslam/trials/trial_judge.h"
 #include "eyeslam/trials/trial_report.h"
+#include "trial/real_time_trial.h"
 
 namespace eyeslam::apps {
 namespace {
@@ -36,28 +37,45 @@ TrialJob::~TrialJob()
 }
 
 std::optional<trials::TrialRecord> TrialJob::run(const std::shared_ptr<const trials::TrialScene>& scene,
-                                                 const std::function<bool(double)>& goesOn)
+                                                 const GoesOn& goesOn)
 {
   const double start = monotonicSeconds();
-  const trials::TrialSetting& setting = trial_.variant->setting;
   if (!arguments_.no_logs) log_.emplace(folder_->staged(kLog));
-  if (arguments_.video)
-    video_.emplace(folder_->staged(kVideo), folder_->final(kVideo), files::VideoCoding::lossless,
-                   setting.scenario.camera_hz);
   trials::TrialJudge judge(scene);
-  trials::Trial trial(setting, {setting.scenario.name, trial_.variant->name, trial_.seed}, kVersion, *scene,
-                      [&](const files::LogEvent& event) {
-                        judge.take(event);
-                        if (log_) log_->append(event.channel, event.data, event.size, event.utime);
-                      });
-  for (std::int64_t steps = 1; trial.step(); ++steps) {
-    if (video_ && trial.frame() != nullptr) video_->add(*trial.frame());
-    if (steps % kStepsToAsk == 0 && !goesOn(trial.time())) return std::nullopt;
-  }
+  const trials::TrialName name{trial_.variant->setting.scenario.name, trial_.variant->name, trial_.seed};
+  const auto hear = [&](const files::LogEvent& event) {
+    judge.take(event);
+    if (log_) log_->append(event.channel, event.data, event.size, event.utime);
+  };
+  const bool whole =
+      arguments_.real_time ? runLive(*scene, name, hear, goesOn) : runInLockStep(*scene, name, hear, goesOn);
+  if (!whole) return std::nullopt;
   trials::TrialRecord record = judge.record();
   record.score.wall_s = std::round(1e3 * (monotonicSeconds() - start)) * 1e-3;
   keep(record);
   return record;
+}
+
+bool TrialJob::runInLockStep(const trials::TrialScene& scene, const trials::TrialName& name, const Hear& hear,
+                             const GoesOn& goesOn)
+{
+  const trials::TrialSetting& setting = trial_.variant->setting;
+  if (arguments_.video)
+    video_.emplace(folder_->staged(kVideo), folder_->final(kVideo), files::VideoCoding::lossless,
+                   setting.scenario.camera_hz);
+  trials::Trial trial(setting, name, kVersion, scene, hear);
+  for (std::int64_t steps = 1; trial.step(); ++steps) {
+    if (video_ && trial.frame() != nullptr) video_->add(*trial.frame());
+    if (steps % kStepsToAsk == 0 && !goesOn(trial.time())) return false;
+  }
+  return true;
+}
+
+bool TrialJob::runLive(const trials::TrialScene& scene, const trials::TrialName& name, const Hear& hear,
+                       const GoesOn& goesOn)
+{
+  const std::string video = arguments_.video ? folder_->staged(kVideo) : "";
+  return RealTimeTrial(trial_.variant->setting, name, scene, video, hear).run(goesOn);
 }
 
 void TrialJob::keep(const trials::TrialRecord& record)

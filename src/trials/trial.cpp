@@ -1,170 +1,53 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "eyeslam/trials/trial.h"
 
-#include <algorithm>
-#include <array>
-#include <nlohmann/json.hpp>
 #include <utility>
 
-#include "eyeslam/configuration/listing.h"
-#include "eyeslam/simulation/hardware_fault.h"
 #include "eyeslam/trials/lock_step_time.h"
-#include "eyeslam/trials/trial_marks.h"
 
 namespace eyeslam::trials {
 
 namespace {
 
-constexpr double kLatest_s = 40.0;     // what never began by then begins no more
-constexpr double kAfterwards_s = 0.3;  // that a log shows of what comes after the last burn
-
 std::int64_t sessionOf(const TrialName& name) { return static_cast<std::int64_t>(name.seed) + 1; }
 
 }  // namespace
 
-std::string TrialName::json() const
-{
-  return nlohmann::ordered_json{{"scenario", scenario}, {"variant", variant}, {"seed", seed}}.dump();
-}
-
-std::optional<TrialName> TrialName::parse(const std::string& note)
-{
-  const auto json = nlohmann::json::parse(note, nullptr, false);
-  if (!json.is_object() || !json.contains("scenario") || !json.contains("seed")) return std::nullopt;
-  try {
-    return TrialName{json.at("scenario").get<std::string>(), json.value("variant", ""),
-                     json.at("seed").get<std::uint64_t>()};
-  } catch (const nlohmann::json::exception&) {
-    return std::nullopt;
-  }
-}
-
 Trial::Trial(const TrialSetting& setting, const TrialName& name, const std::string& version, const TrialScene& scene,
              Each each)
-    : setting_(setting),
-      scene_(scene),
-      name_(name),
-      version_(version),
-      link_("memq://", sessionOf(name), std::nullopt),
+    : link_("memq://", sessionOf(name), std::nullopt),
       tap_(link_,
            [each = std::move(each)](const messaging::TappedEvent& event) {
              each({event.number, event.utime, event.channel, event.data, event.size});
            }),
-      marks_(link_),
-      surgeon_(setting, scene, link_),
-      hardware_(
-          setting.hardware, [this](double t_s) { return surgeon_.task(t_s); }, link_, name.seed),
-      truths_(link_, hardware_.umPerPx())
+      world_(setting, name, version, scene, link_)
 {
-  if (needsVision()) {
-    vision_.emplace(setting.vision, scene.camera(), scene.fundus(), link_, name.seed);
-    servo_.emplace(setting, link_);
-    operator_.emplace(setting, scene, link_);
-  } else {
-    hardware_.inject(simulation::HardwareFault::power_off);  // the bare hand
-    if (setting.scenario.isLaser()) manual_.emplace(setting, scene, link_);
-  }
+  if (!world_.needsVision()) return;
+  vision_.emplace(setting.vision, scene.camera(), scene.fundus(), link_, name.seed);
+  servo_.emplace(setting, link_);
 }
 
 bool Trial::step()
 {
-  const std::int64_t utime = kStart_us + steps_ * kPeriod_us;
+  const std::int64_t utime = kStart_us + steps_++ * kPeriod_us;
   const messaging::ReceiveTime now{utime, utime};
   tap_.setTime(utime);
-  if (steps_++ == 0) mark(mark_t::START, name_.json(), utime);
-  breakThings();
-  hardware_.step(now);
-  look();
-  truths_.publish(hardware_.truth(), utime);
+  frame_ = nullptr;
+  if (const auto due = world_.advance(now); due && vision_) look(*due);
+  world_.tellTruth(now);
   if (vision_) vision_->step(now);
-  if (operator_) operator_->step(time(), now);
-  aim();
-  if (manual_) {
-    manual_->step(hardware_.truth().spotRetina().head<2>(), now);
-  }
-  decide(now);
+  world_.act(now);
   link_.drain(now);
   if (servo_) servo_->cycle(now);
   link_.drain(now);
-  return !isOver();
+  return !world_.isOver();
 }
 
-// Over a pattern he keeps the beam of the instrument at rest in its middle.
-void Trial::aim()
+void Trial::look(const simulation::FrameDue& due)
 {
-  if (!setting_.scenario.isLaser()) return;
-  const Eigen::Vector3d spot_from_tip = hardware_.truth().spotRetina() - hardware_.truth().tipRetina();
-  surgeon_.aimAt(manual_ ? manual_->target() : Eigen::Vector2d(scene_.middle().head<2>()), spot_from_tip.head<2>());
-}
-
-void Trial::look()
-{
-  frame_ = nullptr;
-  const auto due = hardware_.frameDue();
-  if (!due) return;
-  truths_.expose(*due);
-  if (!vision_) return;
-  vision_->look(*due);
+  vision_->setObstruction(world_.obstruction());
+  vision_->look(due);
   frame_ = &vision_->image();
-}
-
-// When what counts begins and ends.
-void Trial::decide(const messaging::ReceiveTime& now)
-{
-  const Scenario& scenario = setting_.scenario;
-  const double settling = scenario.isLaser() ? 0.0 : scenario.settling_s;
-  const bool begins = operator_ ? operator_->asked() && time() >= operator_->askedAt() + settling : time() >= settling;
-  if (!counts_s_ && begins) {
-    counts_s_ = time();
-    mark(mark_t::NOTE, kCountsFromHere, now.utime);
-  }
-  const bool done = manual_ ? manual_->done() : operator_ && operator_->planDone();
-  if (!done_s_ && done && scenario.isLaser()) done_s_ = time();
-  if (isOver()) mark(mark_t::STOP, counts_s_ ? "" : kNeverBegan, now.utime);
-}
-
-bool Trial::isOver() const
-{
-  if (!counts_s_) return time() >= kLatest_s;
-  const double end = *counts_s_ + setting_.scenario.duration_s;
-  return time() >= (done_s_ ? std::min(end, *done_s_ + kAfterwards_s) : end);
-}
-
-void Trial::breakThings()
-{
-  const ScenarioFaultOptions& fault = setting_.scenario.fault;
-  if (fault.kind == "none" || !counts_s_) return;
-  const double since = time() - *counts_s_ - fault.at_s;
-  const bool broken = since >= 0.0 && since < fault.for_s;
-  if (broken == broken_) return;
-  broken_ = broken;
-  setFault(broken);
-}
-
-void Trial::setFault(bool broken)
-{
-  const std::string& kind = setting_.scenario.fault.kind;
-  if (kind == "motion") return;  // the eye does it by itself
-  if (kind == "operator_lost") return operator_->setLinked(!broken);
-  if (kind == "blackout") return vision_->setObstruction(broken ? Obstruction::dark : Obstruction::none);
-  if (kind == "tool_over_everything") return vision_->setObstruction(broken ? Obstruction::covered : Obstruction::none);
-  const simulation::HardwareFault fault = simulation::hardwareFault(kind);
-  broken ? hardware_.inject(fault) : hardware_.mend(fault);
-}
-
-void Trial::mark(std::int16_t kind, const std::string& note, std::int64_t utime)
-{
-  mark_t message{};
-  message.utime = utime;
-  message.kind = kind;
-  message.sender = "eyeslam-trial";
-  message.version = version_;
-  message.note = note;
-  if (kind == mark_t::START) {
-    message.configuration = configuration::yamlOf(setting_, configuration::YamlComments::left_out);
-    message.configuration_hash = configuration::hashOf(setting_);
-  }
-  marks_.publish(message, utime);
 }
 
 }  // namespace eyeslam::trials

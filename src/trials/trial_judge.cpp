@@ -22,6 +22,7 @@ constexpr double kMicro = 1e-6;
 constexpr double kFar = 60e-6;    // issue 17: pulses more than 60 um off
 constexpr double kMoved = 40e-6;  // the same: explained where the retina moved more
 constexpr double kPeriod_s = 1e-3;
+constexpr std::int64_t kMostMissing = 10'000;  // milliseconds; a longer gap is another clock's
 
 template <class Message, class Use>
 bool takeAs(const files::LogEvent& event, const char* channel, Use use)
@@ -79,18 +80,27 @@ void TrialJudge::countFrom(std::int64_t utime)
 void TrialJudge::take(const truth_t& truth)
 {
   if (!setting_ || over_) return;
-  if (retina_.empty()) first_truth_ = truth.utime;
   um_per_px_ = truth.um_per_px;
-  retina_.push_back(
-      {{truth.retina_centre[0], truth.retina_centre[1], 0.0}, Eigen::Vector3d(truth.retina_shift), truth.retina_theta});
+  rememberRetina(
+      {{truth.retina_centre[0], truth.retina_centre[1], 0.0}, Eigen::Vector3d(truth.retina_shift), truth.retina_theta},
+      truth.utime);
   if (truth.frame >= 0) {
     const retina::Pose2 pose = poseOf(truth.frame_x_px, truth.frame_y_px, truth.frame_theta, 1.0);
-    if (!first_frame_) first_frame_ = pose;
     if (frames_.empty() || frames_.rbegin()->first != truth.frame) frames_.insert({truth.frame, {pose, {}}});
   }
   watchSpeed(truth);
   followPulse(truth);
   if (counts()) judgeTip(truth);
+}
+
+// In real time some are lost.
+void TrialJudge::rememberRetina(const simulation::RetinaPose& retina, std::int64_t utime)
+{
+  if (retina_.empty()) first_truth_ = utime;
+  const std::int64_t step = (utime - first_truth_ + kPeriod_us / 2) / kPeriod_us;
+  const auto missing = std::clamp<std::int64_t>(step - static_cast<std::int64_t>(retina_.size()), 0, kMostMissing);
+  retina_.insert(retina_.end(), static_cast<std::size_t>(missing), retina);
+  retina_.push_back(retina);
 }
 
 // In the world, where the manipulator is.
@@ -132,6 +142,7 @@ void TrialJudge::take(const retina_pose_t& pose, std::int64_t utime)
 {
   newest_frame_ = pose.tracked ? pose.utime : newest_frame_;
   const auto frame = frames_.find(pose.frame);
+  if (!first_frame_ && frame != frames_.end()) first_frame_ = frame->second.truth;  // the tracker's map begins there
   if (!counts() || frame == frames_.end()) return;
   ++frames_seen_;
   pose_ages_s_.push_back(kMicro * static_cast<double>(utime - pose.utime));
@@ -144,6 +155,7 @@ void TrialJudge::take(const servo_status_t& status)
 {
   const bool changed = !has_status_ || status.state != status_.state;
   if (counts() && status.frame_to_command >= 0.0) frame_to_command_s_.push_back(status.frame_to_command);
+  if (counts() && status.computation > 0.0) computation_s_.push_back(status.computation);
   has_status_ = true;
   status_ = status;
   if (!changed || over_) return;

@@ -67,6 +67,7 @@ class TrialJudge {
   void take(const servo_status_t& status);
   void take(const burn_plan_t& plan);
   void take(const vessel_map_t& tile);
+  void rememberRetina(const simulation::RetinaPose& retina, std::int64_t utime);
   void watchSpeed(const truth_t& truth);
   void judgeTip(const truth_t& truth);
   void followPulse(const truth_t& truth);
@@ -106,7 +107,7 @@ class TrialJudge {
   std::map<std::int64_t, SeenFrame> frames_;
   std::optional<retina::Pose2> first_frame_;
   std::int64_t frames_seen_ = 0, frames_tracked_ = 0, newest_frame_ = 0;
-  std::vector<double> pose_ages_s_, frame_to_command_s_;
+  std::vector<double> pose_ages_s_, frame_to_command_s_, computation_s_;
 
   servo_status_t status_{};
   bool has_status_ = false;

@@ -62,6 +62,7 @@ TrialRecord TrialJudge::record() const
   record.events = events_;
   record.pose_ages_s = pose_ages_s_;
   record.frame_to_command_s = frame_to_command_s_;
+  record.computation_s = computation_s_;
   record.fastest_tip = fastest_tip_;
   record.worst_pivot = worst_pivot_;
   record.frames = frames_seen_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/child_program.h"
+#include "command_line/child_program.h"
 
 #include <fmt/format.h>
 #include <spawn.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/frame_feed.h"
+#include "real_time/frame_feed.h"
 
 #include <cmath>
 #include <utility>
