@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""eyeslam-trial --real-time: trials as fast as time passes, with vision and servo as programs of their own.
+real_time_trial_test.py PROGRAM_FOLDER."""
+import json
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+from trial_case import PROGRAMS, SCENARIOS, TRACING, TrialCase, files, rows, small
+
+PROGRAM_MARKS = ["eyeslam-servo", "eyeslam-track", "eyeslam-trial"]
+START, STOP = 0, 1  # mark_t
+
+
+def replay(*arguments):
+    return subprocess.run([PROGRAMS / "eyeslam-replay", *map(str, arguments)], capture_output=True, text=True, timeout=300)
+
+
+class RealTimeTracing(TrialCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.base = pathlib.Path(tempfile.mkdtemp(prefix="eyeslam_trial_test_"))
+        cls.addClassCleanup(shutil.rmtree, cls.base, ignore_errors=True)
+        cls.process = subprocess.run(
+            [PROGRAMS / "eyeslam-trial", TRACING, *small(aid="none hard", duration_s=4), "--real-time", "--video", "--out",
+             cls.base / "live"], capture_output=True, text=True, timeout=300)
+        cls.live = cls.base / "live" / "vessel_tracing"
+        cls.log = cls.live / "aid=hard" / "seed_0000" / "trial.lcm"
+
+    def test_it_ends_well_with_the_files_of_any_trial(self):
+        self.assertEqual(self.process.returncode, 0, self.process.stderr)
+        names = {"report.html", "results.json", "trial.lcm"}
+        self.assertEqual(set(files(self.live / "aid=none" / "seed_0000")), names)
+        self.assertEqual(set(files(self.live / "aid=hard" / "seed_0000")), names | {"video.mkv"})
+
+    def test_the_aid_helps_although_nothing_waits_for_it(self):
+        of = {row["aid"]: row for row in rows(self.base / "live")}
+        # A quarter: the computer may have other things to do meanwhile.
+        self.assertLess(float(of["hard"]["rms_um"]), float(of["none"]["rms_um"]) / 4)
+        self.assertEqual(of["hard"]["fault_events"], "0")
+        self.assertGreater(float(of["hard"]["tracked_fraction"]), 0.95)
+        self.assertEqual(float(of["hard"]["duration_s"]), 4.0)
+
+    def test_its_log_has_every_program_and_a_thousand_states_a_second(self):
+        info = replay("info", self.log, "--json", self.folder / "info.json", "--quiet")
+        self.assertEqual(info.returncode, 0, info.stderr)
+        survey = json.loads((self.folder / "info.json").read_text())
+        channels = {channel["name"]: channel for channel in survey["channels"]}
+        for name, hertz in (("MICRON_STATE", 1000), ("MICRON_COMMAND", 1000), ("TRUTH", 1000), ("RETINA_POSE", 30)):
+            self.assertGreater(channels[name]["events"] / survey["duration_s"], 0.8 * hertz, name)
+        for kind in (START, STOP):
+            self.assertEqual(sorted(mark["sender"] for mark in survey["marks"] if mark["kind"] == kind), PROGRAM_MARKS)
+
+    def test_its_report_says_that_latencies_were_measured(self):
+        report = (self.log.parent / "report.html").read_text()
+        self.assertIn("in real time", report)
+        self.assertIn("CPU time of the longest cycle", report)
+
+    def test_its_tracker_says_the_same_again(self):
+        result = self.folder / "again.json"
+        again = replay(self.log, "--only", "tracker", "--quiet", "--json", result)
+        self.assertEqual(again.returncode, 0, again.stdout + again.stderr)
+        poses = {channel["name"]: channel for channel in json.loads(result.read_text())["channels"]}["RETINA_POSE"]
+        self.assertGreater(poses["compared"], 100)
+        self.assertEqual(poses["identical"], poses["compared"])
+
+    def test_its_scores_come_again_from_its_log(self):
+        again = replay("report", self.log, "--out", self.folder / "again")
+        self.assertEqual(again.returncode, 0, again.stderr)
+        first = next(row for row in rows(self.base / "live") if row["aid"] == "hard")
+        second = rows(self.folder / "again")[0]
+        for name in ("rms_um", "p95_um", "path_coverage", "pose_rms_px", "tracked_fraction", "config_hash"):
+            self.assertEqual(first[name], second[name], name)
+
+
+class RealTimeCalls(TrialCase):
+    def test_what_makes_no_sense_in_real_time_is_refused_by_name(self):
+        out = ("--out", self.folder / "out")
+        self.assertIn("--jobs", self.refusal(2, TRACING, "--real-time", "--jobs", "2", *out))
+        blackout = self.run_trial(SCENARIOS / "vessel_tracing.yaml", *small(aid="hard", duration_s=2, fault__kind="blackout",
+                                  fault__must="hold"), "--real-time", "--quiet", *out)
+        self.assertEqual(blackout.returncode, 1, blackout.stderr)
+        self.assertIn("blackout", blackout.stderr)
+        self.assertFalse((self.folder / "out" / "vessel_tracing").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
