@@ -151,6 +151,9 @@ def laser_rows(slow, fast):
     yield "error / time a burn against manual", f"{lower:.0f} % / {faster:.0f} %", "-94 % / -73 %", "-88 % / -65 %"
     yield "burns a second", f"{mean(still, 'burns_per_s'):.2f}", "2.75", "2.3"
 
+    yield ("length of burns, drawn out by the spot's way: mean ± spread",
+           f"{mean(still, 'burn_length_mean_um'):.0f} ± {mean(still, 'burn_length_spread_um'):.1f}", "", "")
+
     def far(trials):
         return f"{total(trials, 'far_pulses')} of {total(trials, 'fired')}"
 

@@ -155,14 +155,14 @@ ReportTable eventTable(const std::vector<TrialEvent>& events)
 
 ReportTable pulseTable(const std::vector<PulseRecord>& pulses)
 {
-  ReportTable table{{"target", "time (s)", "pulse (ms)", "off (\u00b5m)", "to the nearest vessel (\u00b5m)",
-                     "calibre touched (\u00b5m)", "far"},
+  ReportTable table{{"target", "time (s)", "pulse (ms)", "off (\u00b5m)", "burn length (\u00b5m)",
+                     "to the nearest vessel (\u00b5m)", "calibre touched (\u00b5m)", "far"},
                     {}};
   for (const PulseRecord& pulse : pulses) {
     const char* far = !pulse.far ? "" : pulse.explained ? "explained" : "unexplained";
     table.rows.push_back({std::to_string(pulse.target), fmt::format("{:.3f}", pulse.t_s),
                           fmt::format("{:.0f}", 1e3 * pulse.duration), fmt::format("{:.1f}", 1e6 * pulse.placement),
-                          fmt::format("{:.0f}", 1e6 * pulse.clearance),
+                          fmt::format("{:.0f}", 1e6 * pulse.length), fmt::format("{:.0f}", 1e6 * pulse.clearance),
                           pulse.touched_calibre > 0.0 ? fmt::format("{:.0f}", 1e6 * pulse.touched_calibre) : "", far});
   }
   return table;

@@ -191,13 +191,19 @@ void TrialJudge::followPulse(const truth_t& truth)
   if (!emitting_) return;
   if (begins) {
     const std::int64_t newest = setting_->scenario.isManual() ? truth.frame_utime : newest_frame_;
-    pulses_.push_back({laser_.target, laser_.pulse, truth.utime, 0, newest});
+    Pulse pulse;
+    pulse.target = laser_.target;
+    pulse.number = laser_.pulse;
+    pulse.begin = truth.utime;
+    pulse.newest_frame = newest;
+    pulses_.push_back(pulse);
     if (!mayEmit()) ++violations_;
   }
   Pulse& pulse = pulses_.back();
   pulse.end = truth.utime;
   pulse.steps += 1.0;
   pulse.spot += (Eigen::Vector2d(truth.spot) - pulse.spot) / pulse.steps;
+  pulse.way.extend(Eigen::Vector2d(truth.spot));
 }
 
 Eigen::Vector2d TrialJudge::ontoRetina(double x_px, double y_px) const
@@ -234,6 +240,7 @@ PulseRecord TrialJudge::recordOf(const Pulse& pulse) const
     record.wanted = ontoRetina(target.x_px, target.y_px);
     burn = kMicro * target.burn_um;
   }
+  record.length = burn + pulse.way.diagonal().norm();
   record.placement = (record.spot - record.wanted).norm();
   record.clearance = scene_->vesselDistance(pulse.spot) - 0.5 * burn;
   record.touched_calibre = scene_->widestWithin(pulse.spot, 0.5 * burn);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -54,6 +55,7 @@ class TrialJudge {
     std::int64_t number = 0, begin = 0, end = 0, newest_frame = 0;
     Eigen::Vector2d spot = Eigen::Vector2d::Zero();
     double steps = 0.0;
+    Eigen::AlignedBox2d way;  // of the spot over the retina
   };
   struct SeenFrame {
     retina::Pose2 truth;

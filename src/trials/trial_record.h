@@ -30,6 +30,7 @@ struct PulseRecord {
   Eigen::Vector2d wanted = Eigen::Vector2d::Zero(), spot = Eigen::Vector2d::Zero();  ///< mean over the pulse
   double placement = 0.0;                                                            ///< m, between both
   double duration = 0.0;                                                             ///< s
+  double length = 0.0;         ///< m, of the burn: its diameter, drawn out by the spot's way during the pulse
   double clearance = 0.0;      ///< m, its edge to the nearest true vessel's edge; negative: they touch
   double touched_calibre = 0;  ///< m, of the widest true vessel that its disc touches; 0: none
   bool far = false;            ///< more than 60 um off

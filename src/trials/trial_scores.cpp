@@ -28,6 +28,15 @@ double mean(const std::vector<double>& values)
   return values.empty() ? 0.0 : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
+// Standard deviation, of the values themselves.
+double spread(const std::vector<double>& values)
+{
+  const double middle = mean(values);
+  double squares = 0.0;
+  for (const double value : values) squares += (value - middle) * (value - middle);
+  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(values.size(), 1)));
+}
+
 template <class Of, class Values>
 std::vector<double> each(const Values& values, const Of& of)
 {
@@ -187,6 +196,9 @@ void TrialJudge::addPulses(TrialRecord& record) const
   }
   const double took_s = record.pulses.back().t_s - record.pulses.front().t_s;
   if (took_s > 0.0) score.burns_per_s = static_cast<double>(pulses_.size() - 1) / took_s;
+  const std::vector<double> lengths = each(record.pulses, [](const PulseRecord& p) { return p.length / kMicro; });
+  score.more.emplace_back("burn_length_mean_um", mean(lengths));
+  score.more.emplace_back("burn_length_spread_um", spread(lengths));
   score.more.emplace_back("waited_for_first_burn_s", record.pulses.front().t_s);
   for (std::size_t kind = 0; kind < kCalibreClasses.size(); ++kind) {
     const auto touching = std::count_if(record.pulses.begin(), record.pulses.end(), [kind](const PulseRecord& pulse) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "eyeslam/trials/trial_report.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -155,6 +156,29 @@ TEST_F(TrialReports, ShowBurnsWhereTheyTrulyWentAndWhyTargetsWereRefused)
     ++burns;
   EXPECT_EQ(burns, record.pulses.size());
   EXPECT_TRUE(has(page, "near_vessel ("));
+}
+
+TEST_F(TrialReports, TellBurnsOnVesselsByCalibreBesideWhatTheMapHas)
+{
+  TrialRecord record = make.burnt("automated", 0);
+  for (PulseRecord& pulse : record.pulses) pulse.touched_calibre = 0.0;
+  record.pulses.front().touched_calibre = 25e-6;
+  record.map.coverage = {std::nullopt, 0.875, 0.991};
+  const std::string share = fmt::format("{:.2f}", 100.0 / static_cast<double>(record.pulses.size()));
+  const std::string page = studyReport({record, make.burnt("manual", 0)});
+  for (const std::string& said : {share, std::string("its map has"), std::string("87.5"), std::string("99.1")})
+    EXPECT_TRUE(has(page, said)) << said;
+  record.map = {};
+  EXPECT_FALSE(has(studyReport({record, make.burnt("manual", 0)}), "its map has"));
+}
+
+TEST_F(TrialReports, SayWhetherLatenciesWereMeasured)
+{
+  TrialRecord record = make.traced("hard", 0);
+  record.computation_s.clear();
+  EXPECT_FALSE(has(trialReport(record), "in real time"));
+  record.computation_s = {20e-6, 30e-6};
+  EXPECT_TRUE(has(trialReport(record), "in real time"));
 }
 
 TEST_F(TrialReports, StayBelowTenMegabytesForFortyTrials)

@@ -95,6 +95,27 @@ TEST(TrialJudge, PassesOverWhatIsNotItsOwn)
   EXPECT_THROW(TrialJudge().record(), std::logic_error);
 }
 
+TEST(TrialJudge, TellsOfItsMapHowMuchOfTheTrueVesselsItHas)
+{
+  const MapCoverage& map = traced().judge.record().map;
+  EXPECT_GT(map.coverage[2].value(), 0.7);  // seconds after the first frame
+  EXPECT_LE(map.coverage[2].value(), 1.0);
+  EXPECT_GT(map.coverage[2].value(), map.coverage[0].value_or(0.0)) << "wide vessels are easier";
+  EXPECT_GT(map.precision.value(), 0.6);
+}
+
+TEST(TrialJudge, DrawsBurnsOutByTheWayOfTheSpot)
+{
+  ShortTrial trial("task: laser\naid: automated\nduration_s: 2\nlaser: {map_s: 1}\n");
+  const TrialRecord record = trial.run().judge.record();
+  ASSERT_FALSE(record.pulses.empty());
+  const double burn = record.targets.front().burn;
+  for (const PulseRecord& pulse : record.pulses) {
+    EXPECT_GT(pulse.length, burn);
+    EXPECT_LT(pulse.length, burn + 60e-6);  // of tremor that is left, within a pulse
+  }
+}
+
 TEST(Trial, ScoresTheAidedHandAgainstTheTruth)
 {
   const TrialRecord record = traced().judge.record();
