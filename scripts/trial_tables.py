@@ -106,6 +106,8 @@ def tracing_rows(slow, fast):
                "83 % / 65 %")
         yield ("outside 150 ms after fast motion: RMS / p99",
                f"{mean(fast_eye, 'calm_rms_um'):.1f} / {mean(fast_eye, 'calm_p99_um'):.0f}", "12.9 / 32", "15 / 40")
+        yield ("the same, beside the path itself and not beyond its ends",
+               f"{mean(fast_eye, 'calm_on_path_rms_um'):.1f} / {mean(fast_eye, 'calm_on_path_p99_um'):.0f}", "", "")
     if fast:
         yield ("hard, 120/5: in situ / jerky RMS",
                f"{mean(chosen(fast, 'hard'), 'rms_um'):.1f} / {mean(chosen(fast, 'hard', 'jerky'), 'rms_um'):.1f}",

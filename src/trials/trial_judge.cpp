@@ -111,16 +111,24 @@ void TrialJudge::watchSpeed(const truth_t& truth)
   last_world_tip_ = tip;
 }
 
-double TrialJudge::errorOf(const Eigen::Vector3d& tip) const
+TipSample TrialJudge::sampleOf(const Eigen::Vector3d& tip, double t_s) const
 {
-  const std::vector<Eigen::Vector3d>& path = scene_->centreline();
-  if (setting_->scenario.task == "standoff") return std::abs(tip.z() - path.front().z());
-  double nearest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    const Eigen::Vector3d& next = path[std::min(i + 1, path.size() - 1)];
-    nearest = std::min(nearest, distanceToSegment(tip.head<2>(), path[i].head<2>(), next.head<2>()));
+  const std::vector<Eigen::Vector3d>& line = scene_->centreline();
+  TipSample sample{t_s, tip, std::numeric_limits<double>::infinity()};
+  if (setting_->scenario.task == "standoff") {
+    sample.error = std::abs(tip.z() - line.front().z());
+    return sample;
   }
-  return nearest;
+  std::size_t nearest = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const Eigen::Vector3d& next = line[std::min(i + 1, line.size() - 1)];
+    const double distance = distanceToSegment(tip.head<2>(), line[i].head<2>(), next.head<2>());
+    if (distance >= sample.error) continue;
+    sample.error = distance;
+    nearest = i;
+  }
+  sample.on_path = nearest >= scene_->pathBegin() && nearest < scene_->pathBegin() + scene_->path().size();
+  return sample;
 }
 
 void TrialJudge::judgeTip(const truth_t& truth)
@@ -133,9 +141,9 @@ void TrialJudge::judgeTip(const truth_t& truth)
   saturated_ += truth.saturated;
   worst_pivot_ = std::max(worst_pivot_, truth.pivot_error);
   if (setting_->scenario.isLaser()) return;
-  const double error = errorOf(tip);
-  tip_judge_->step({t_s, tip, error, truth.jerk != 0, Eigen::Vector2d(truth.jerked), truth.saturated != 0});
-  tip_.push_back({t_s, tip, error, true});
+  const TipSample sample = sampleOf(tip, t_s);
+  tip_judge_->step({t_s, tip, sample.error, truth.jerk != 0, Eigen::Vector2d(truth.jerked), truth.saturated != 0});
+  tip_.push_back(sample);
 }
 
 void TrialJudge::take(const retina_pose_t& pose, std::int64_t utime)

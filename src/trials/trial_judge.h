@@ -74,7 +74,7 @@ class TrialJudge {
   void judgeTip(const truth_t& truth);
   void followPulse(const truth_t& truth);
   bool mayEmit() const;
-  double errorOf(const Eigen::Vector3d& tip) const;
+  TipSample sampleOf(const Eigen::Vector3d& tip, double t_s) const;
   double time(std::int64_t utime) const { return 1e-6 * static_cast<double>(utime - counts_from_); }
   bool counts() const { return counts_from_ != 0 && !over_; }
 

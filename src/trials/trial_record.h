@@ -19,8 +19,9 @@ namespace eyeslam::trials {
 struct TipSample {
   double t_s = 0.0;  ///< since the part that counts began
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();
-  double error = 0.0;  ///< m, >= 0: how far from right
-  bool calm = true;    ///< not within 150 ms of fast motion of the retina
+  double error = 0.0;   ///< m, >= 0: how far from right
+  bool calm = true;     ///< not within 150 ms of fast motion of the retina
+  bool on_path = true;  ///< beside what is to be followed, not beyond an end of it
 };
 
 /// A pulse that was really emitted; retina frame, m.

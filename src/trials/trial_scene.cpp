@@ -35,6 +35,7 @@ constexpr double kDiscBrightness = 1.3;        // of the mean
 constexpr double kSeam = 1.25;                 // of half a view, that must stay on the retina
 constexpr double kTurn = 0.2;         // of half a view, so far is the eye turned to get reflections out of the way
 constexpr int kTurns = 4;             // steps of it each way
+constexpr double kInView = 0.75;      // of half a view: within it an instrument is seen well
 constexpr double kEyeMoves = 150e-6;  // m, under reflections that stay
 
 cv::Mat read(const std::string& path, int mode)
@@ -120,6 +121,7 @@ TrialScene::TrialScene(const TrialSetting& setting, std::uint64_t seed)
     for (Eigen::Vector3d& place : centreline_) place += middle_ + above;
     return;
   }
+  path_begin_ = 0;
   path_ = {middle_ + above};
   if (scenario.task == "standoff") path_ = straightLine(middle_ + above, std::min(2e-3, 1e-3 * scenario.length_mm));
   if (scenario.task == "hold") path_ = {middle_ + above + workingPlace()};
@@ -144,6 +146,7 @@ void TrialScene::chooseVessel(double longest, bool follows_vessel, std::uint64_t
     return !cv::Rect({}, disc.size()).contains(pixel) || disc(pixel) != 0;
   };
   ChosenVessel chosen;
+  wish.um_per_px = fundus_.um_per_px;
   for (const double beyond : kBeyond) {
     wish.beyond_px = beyond / px;
     ChosenVessel other = vesselToTrace(graph.network(), wish);
@@ -152,40 +155,50 @@ void TrialScene::chooseVessel(double longest, bool follows_vessel, std::uint64_t
   }
   if (chosen.count == 0)
     throw std::invalid_argument("retina: no vessel to trace, apart from its neighbours; take another seed");
-  const Eigen::Vector2d middle = chosen.centreline[chosen.centreline.size() / 2];
+  const Eigen::Vector2d& middle = chosen.middle;
   for (const Eigen::Vector2d& place : chosen.centreline) {
     const Eigen::Vector2d from_middle = px * (place - middle);
     centreline_.emplace_back(from_middle.x(), from_middle.y(), 0.0);
   }
+  const auto lean = static_cast<std::size_t>(kBeyond[0] / px);
+  const std::size_t from = chosen.first - std::min(chosen.first, lean);
+  const std::size_t to = std::min(centreline_.size(), chosen.first + chosen.count + lean);
   Eigen::Vector2d view = px * middle;
   if (camera_.view_x_mm >= 0.0 && camera_.view_y_mm >= 0.0) {
     view = 1e-3 * Eigen::Vector2d(camera_.view_x_mm, camera_.view_y_mm);
   } else {
-    if (follows_vessel) view += besideReflections(kTurn * half_view, seed);
+    if (follows_vessel) view += besideReflections(from, to, half_view, seed);
     camera_.view_x_mm = 1e3 * view.x();
     camera_.view_y_mm = 1e3 * view.y();
   }
   for (Eigen::Vector3d& place : centreline_) place.head<2>() += px * middle - view;
-  const auto first = centreline_.begin() + static_cast<std::ptrdiff_t>(chosen.first);
+  path_begin_ = chosen.first;
+  const auto first = centreline_.begin() + static_cast<std::ptrdiff_t>(path_begin_);
   path_.assign(first, first + static_cast<std::ptrdiff_t>(chosen.count));
 }
 
-// Where the view's middle should lie from the vessel's, so that little of the vessel is under reflections, which stay
-// while the eye is turned.
-Eigen::Vector2d TrialScene::besideReflections(const Eigen::Vector2d& furthest, std::uint64_t seed) const
+// Where the view's middle should lie from the vessel's, so that little of this part of it is out of sight: under
+// reflections, which stay while the eye is turned, or near the view's border, where the instrument is lost.
+Eigen::Vector2d TrialScene::besideReflections(std::size_t from, std::size_t to, const Eigen::Vector2d& half_view,
+                                              std::uint64_t seed) const
 {
   const simulation::SpecularBlooms blooms = simulation::specularBlooms(camera_, seed);
   const double px = kMicro * um_per_px_;
   const cv::Point2d centre = simulation::imageCentre(camera_);
   const auto hidden = [&](const Eigen::Vector2d& view) {
-    return std::count_if(centreline_.begin(), centreline_.end(), [&](const Eigen::Vector3d& place) {
-      const Eigen::Vector2d seen = (place.head<2>() - view) / px;
-      return blooms.mayHide(centre + cv::Point2d(seen.x(), seen.y()), kEyeMoves / px);
-    });
+    std::size_t count = 0;
+    for (std::size_t i = from; i < to; ++i) {
+      const Eigen::Vector2d seen = centreline_[i].head<2>() - view;
+      const bool outside = (seen.cwiseAbs().array() > kInView * half_view.array()).any();
+      const cv::Point2d at = centre + cv::Point2d(seen.x() / px, seen.y() / px);
+      count += outside || blooms.mayHide(at, kEyeMoves / px);
+    }
+    return count;
   };
   std::vector<Eigen::Vector2d> views;
   for (int y = -kTurns; y <= kTurns; ++y)
-    for (int x = -kTurns; x <= kTurns; ++x) views.emplace_back(furthest.cwiseProduct(Eigen::Vector2d(x, y)) / kTurns);
+    for (int x = -kTurns; x <= kTurns; ++x)
+      views.emplace_back(kTurn * half_view.cwiseProduct(Eigen::Vector2d(x, y)) / kTurns);
   std::stable_sort(views.begin(), views.end(), [](const auto& a, const auto& b) { return a.norm() < b.norm(); });
   const auto hides_less = [&](const auto& a, const auto& b) { return hidden(a) < hidden(b); };
   return *std::min_element(views.begin(), views.end(), hides_less);

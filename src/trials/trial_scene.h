@@ -30,6 +30,8 @@ class TrialScene {
   const std::vector<Eigen::Vector3d>& path() const { return path_; }
   /// What the tip is judged by: of a vessel what lies beyond both ends of the path as well, for a hand leans over them.
   const std::vector<Eigen::Vector3d>& centreline() const { return centreline_; }
+  /// The first point of the path in it.
+  std::size_t pathBegin() const { return path_begin_; }
   const RetinaPicture& picture() const { return picture_; }
   /// Calibre of the widest true vessel within a disc, m; 0 where none is.
   double widestWithin(const Eigen::Vector2d& place, double radius) const;
@@ -42,13 +44,15 @@ class TrialScene {
   Eigen::Vector2d pixelOf(const Eigen::Vector2d& place) const;
 
   void chooseVessel(double longest, bool follows_vessel, std::uint64_t seed);
-  Eigen::Vector2d besideReflections(const Eigen::Vector2d& furthest, std::uint64_t seed) const;
+  Eigen::Vector2d besideReflections(std::size_t from, std::size_t to, const Eigen::Vector2d& half_view,
+                                    std::uint64_t seed) const;
 
   simulation::Fundus fundus_;
   simulation::EyeCameraOptions camera_;
   double um_per_px_ = 0.0;
   Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> path_, centreline_;
+  std::size_t path_begin_ = 0;
   RetinaPicture picture_;
   cv::Mat_<float> calibre_px_, distance_px_;
 };

@@ -123,11 +123,16 @@ void TrialJudge::addTip(TrialRecord& record) const
   score.p95_um = figures.p95;
   score.max_um = figures.max;
   if (scene_->path().size() > 1) score.path_coverage = coverage(scene_->path(), tip_);
-  std::vector<double> calm;
-  for (const TipSample& sample : record.tip)
-    if (sample.calm) calm.push_back(sample.error / kMicro);
+  std::vector<double> calm, on_path;
+  for (const TipSample& sample : record.tip) {
+    if (!sample.calm) continue;
+    calm.push_back(sample.error / kMicro);
+    if (sample.on_path) on_path.push_back(sample.error / kMicro);
+  }
   score.more.emplace_back("calm_rms_um", errorFigures(calm).rms);
   score.more.emplace_back("calm_p99_um", errorFigures(calm).p99);
+  score.more.emplace_back("calm_on_path_rms_um", errorFigures(on_path).rms);
+  score.more.emplace_back("calm_on_path_p99_um", errorFigures(on_path).p99);
 }
 
 void TrialJudge::addPoses(TrialRecord& record) const

@@ -6,6 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "eyeslam/fixtures/centerline_index.h"
+#include "eyeslam/fixtures/vessel_route.h"
 #include "eyeslam/fixtures/vessel_walk.h"
 
 namespace eyeslam::trials {
@@ -15,15 +17,16 @@ using Way = std::vector<Eigen::Vector2d>;
 
 namespace {
 
-constexpr int kBeyonds = 4;         // lengths beyond an end that are told
-constexpr double kStraight = 0.77;  // cosine: 40 deg between what lies before and behind a point
-constexpr double kLook_px = 15.0;   // over which a way's direction is taken
-constexpr double kWidest = 2.5;     // of the least radius: no vessel of an eye is wider (facts, D4)
-constexpr double kEven = 1.4;       // of a vessel's median radius
-constexpr double kWider = 1.3;      // of a way's radius: not the way's own next stretch
-constexpr double kBends = 3.0;      // radii from a wider vessel's edge; source: maps of rendered frames, by eye
-constexpr std::size_t kStride = 5;  // points: crowding is no finer
-constexpr double kCrowded = 1.5;    // times its length that a wholly crowded way loses
+constexpr int kBeyonds = 4;              // lengths beyond an end within which the way's middle is
+constexpr double kFarthest_um = 2000.0;  // beyond an end that are told: the manipulator's reach
+constexpr double kStraight = 0.77;       // cosine: 40 deg between what lies before and behind a point
+constexpr double kLook_px = 15.0;        // over which a way's direction is taken
+constexpr double kWidest = 2.5;          // of the least radius: no vessel of an eye is wider (facts, D4)
+constexpr double kEven = 1.4;            // of a vessel's median radius
+constexpr double kWider = 1.3;           // of a way's radius: not the way's own next stretch
+constexpr double kBends = 3.0;           // radii from a wider vessel's edge; source: maps of rendered frames, by eye
+constexpr std::size_t kStride = 5;       // points: crowding is no finer
+constexpr double kCrowded = 1.5;         // times its length that a wholly crowded way loses
 
 double radiusAt(const Vessel& vessel, double quantile)
 {
@@ -157,6 +160,65 @@ double crowding(const Way& way, const fixtures::VesselNetwork& network, double a
   return static_cast<double>(crowded) / static_cast<double>(std::max<std::size_t>(looked, 1));
 }
 
+// The vessel that has both points next to each other, and where in it.
+struct PlaceOn {
+  const Vessel* vessel = nullptr;
+  std::ptrdiff_t point = 0, step = 0;  // of the second one; from the first one to it
+};
+
+PlaceOn placeOf(const Eigen::Vector2d& before, const Eigen::Vector2d& at, const fixtures::VesselNetwork& network)
+{
+  for (const Vessel& vessel : network.vessels) {
+    for (std::size_t i = 1; i < vessel.points.size(); ++i) {
+      const Eigen::Vector2d &a = vessel.points[i - 1].position_px, &b = vessel.points[i].position_px;
+      const auto index = static_cast<std::ptrdiff_t>(i);
+      if (a == before && b == at) return {&vessel, index, 1};
+      if (a == at && b == before) return {&vessel, index - 1, -1};
+    }
+  }
+  return {};
+}
+
+// On from the end of a way, so far.
+Way wayOn(const Way& way, double longest_px, const fixtures::VesselNetwork& network,
+          const fixtures::CenterlineIndex& index)
+{
+  PlaceOn at = placeOf(way[way.size() - 2], way.back(), network);
+  if (!at.vessel) return {};
+  fixtures::VesselRoute route;
+  route.lay(index, index.find(at.vessel->id));
+  Way beyond;
+  for (;;) {
+    const auto points = static_cast<std::ptrdiff_t>(at.vessel->points.size());
+    for (at.point += at.step; at.point >= 0 && at.point < points; at.point += at.step) {
+      beyond.push_back(at.vessel->points[static_cast<std::size_t>(at.point)].position_px);
+      if (static_cast<double>(beyond.size()) >= longest_px) return beyond;  // points are a px apart
+    }
+    const auto next = route.beyond({index.find(at.vessel->id), at.step > 0 ? 1 : 0});
+    if (!next) return beyond;
+    const int id = index.id(next->vessel);
+    const auto vessel = std::find_if(network.vessels.begin(), network.vessels.end(),
+                                     [id](const Vessel& other) { return other.id == id; });
+    at = {&*vessel, next->end == 0 ? 0 : static_cast<std::ptrdiff_t>(vessel->points.size()) - 1,
+          next->end == 0 ? 1 : -1};
+  }
+}
+
+// With what lies beyond both ends.
+ChosenVessel extended(const Way& path, double longest_px, const fixtures::VesselNetwork& network, double um_per_px)
+{
+  const fixtures::CenterlineIndex index(network.vessels, um_per_px);
+  ChosenVessel chosen;
+  chosen.centreline = wayOn({path.rbegin(), path.rend()}, longest_px, network, index);
+  std::reverse(chosen.centreline.begin(), chosen.centreline.end());
+  chosen.first = chosen.centreline.size();
+  chosen.count = path.size();
+  chosen.centreline.insert(chosen.centreline.end(), path.begin(), path.end());
+  const Way after = wayOn(path, longest_px, network, index);
+  chosen.centreline.insert(chosen.centreline.end(), after.begin(), after.end());
+  return chosen;
+}
+
 }  // namespace
 
 ChosenVessel vesselToTrace(const fixtures::VesselNetwork& network, const VesselWish& wish)
@@ -188,9 +250,10 @@ ChosenVessel vesselToTrace(const fixtures::VesselNetwork& network, const VesselW
     if (worth <= best_worth) continue;
     best_worth = worth;
     const auto before = std::min(farthest, begin - ways[run.way].begin());
-    best = {{begin - before, end + std::min(farthest, ways[run.way].end() - end)},
-            static_cast<std::size_t>(before),
-            run.count};
+    const auto after = std::min(farthest, ways[run.way].end() - end);
+    const Eigen::Vector2d middle = *(begin - before + (before + (end - begin) + after) / 2);
+    best = extended({begin, end}, kFarthest_um / wish.um_per_px, network, wish.um_per_px);
+    best.middle = middle;
   }
   return best;
 }
