@@ -28,8 +28,9 @@ constexpr std::int64_t kPeriod_us = 1000;
 constexpr std::int64_t kMostAtOnce = 200;  // of the milliseconds that have passed; a longer pause is one of the world
 constexpr double kPatience_s = 20.0;       // until the programs beside have started
 constexpr int kTurn_ms = 5;
-constexpr std::size_t kBatch = 16;  // messages that are logged under one time
-constexpr int kLastTurns = 40;      // after the end: what is still under way
+constexpr std::size_t kBatch = 16;         // messages that are logged under one time
+constexpr useconds_t kCtrlC_us = 200'000;  // until it is known here
+constexpr int kLastTurns = 40;             // after the end: what is still under way
 constexpr const char* kTracker = "eyeslam-track";
 constexpr const char* kServo = "eyeslam-servo";
 
@@ -92,15 +93,19 @@ bool RealTimeTrial::run(const std::function<bool(double)>& goesOn)
   bool whole = true;
   while (whole && !loop_->ended()) {
     hear(kTurn_ms);
-    checkPrograms();
     whole = goesOn(time_s_);
+    if (!whole || programsRun()) continue;
+    usleep(kCtrlC_us);  // which ends them, too
+    whole = goesOn(time_s_);
+    if (whole) checkPrograms();
   }
   loop_->askToEnd();
   loop_->join();
   if (feed_) feed_->end();
+  if (!whole) return false;
   for (int i = 0; i < kLastTurns; ++i) hear(kTurn_ms);
   endPrograms();
-  return whole;
+  return true;
 }
 
 void RealTimeTrial::startPrograms()
@@ -167,6 +172,11 @@ void RealTimeTrial::hear(int timeout_ms)
     tap_.setTime(now.utime);
     heard = logger_.drain(now, kBatch);
   }
+}
+
+bool RealTimeTrial::programsRun()
+{
+  return (!tracker_ || tracker_->runs()) && (!servo_ || servo_->runs()) && !(feed_ && feed_->failed());
 }
 
 void RealTimeTrial::checkPrograms()

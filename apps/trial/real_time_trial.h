@@ -44,6 +44,7 @@ class RealTimeTrial {
   void startWorld();
   bool cycle(const CycleStart& start);
   void hear(int timeout_ms);
+  bool programsRun();
   void checkPrograms();
   void endPrograms();
 

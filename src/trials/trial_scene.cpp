@@ -97,6 +97,33 @@ cv::Mat_<std::uint8_t> brightPlaces(const simulation::Fundus& fundus)
   return bright;
 }
 
+// @param border  m, around it that no vessel is looked for in
+ChosenVessel chosenVessel(const simulation::Fundus& fundus, const Eigen::Vector2d& border, double longest)
+{
+  const double px = kMicro * fundus.um_per_px;
+  fixtures::VesselGraph graph;
+  graph.update(mapOf(fundus.calibre_px, fundus.um_per_px));
+  const Eigen::Vector2d size(fundus.calibre_px.cols, fundus.calibre_px.rows);
+  const Eigen::Vector2d inset = (border / px).cwiseMin(0.49 * size);
+  const cv::Mat_<std::uint8_t> disc = brightPlaces(fundus);
+  VesselWish wish{{inset, size - inset}, longest / px, kRadius / px, kApart / px, {}, 0.0};
+  wish.um_per_px = fundus.um_per_px;
+  wish.excluded = [&disc](const Eigen::Vector2d& at) {
+    const cv::Point pixel(cvRound(at.x()), cvRound(at.y()));
+    return !cv::Rect({}, disc.size()).contains(pixel) || disc(pixel) != 0;
+  };
+  ChosenVessel chosen;
+  for (const double beyond : kBeyond) {
+    wish.beyond_px = beyond / px;
+    ChosenVessel other = vesselToTrace(graph.network(), wish);
+    if (other.count > chosen.count) chosen = std::move(other);
+    if (static_cast<double>(chosen.count) * px > kLongEnough) break;  // points are a px apart
+  }
+  if (chosen.count == 0)
+    throw std::invalid_argument("retina: no vessel to trace, apart from its neighbours; take another seed");
+  return chosen;
+}
+
 }  // namespace
 
 TrialScene::TrialScene(const TrialSetting& setting, std::uint64_t seed)
@@ -133,55 +160,36 @@ TrialScene::TrialScene(const TrialSetting& setting, std::uint64_t seed)
 void TrialScene::chooseVessel(double longest, bool follows_vessel, std::uint64_t seed)
 {
   const double px = kMicro * fundus_.um_per_px;
-  fixtures::VesselGraph graph;
-  graph.update(mapOf(fundus_.calibre_px, fundus_.um_per_px));
   const Eigen::Vector2d half_view = 0.5 * um_per_px_ * kMicro * Eigen::Vector2d(camera_.width, camera_.height);
   const Eigen::Vector2d border = kSeam * half_view + Eigen::Vector2d::Constant(1e-3 * camera_.reach_mm);
-  const Eigen::Vector2d size(fundus_.calibre_px.cols, fundus_.calibre_px.rows);
-  const Eigen::Vector2d inset = (border / px).cwiseMin(0.49 * size);
-  const cv::Mat_<std::uint8_t> disc = brightPlaces(fundus_);
-  VesselWish wish{{inset, size - inset}, longest / px, kRadius / px, kApart / px, {}, 0.0};
-  wish.excluded = [&disc](const Eigen::Vector2d& at) {
-    const cv::Point pixel(cvRound(at.x()), cvRound(at.y()));
-    return !cv::Rect({}, disc.size()).contains(pixel) || disc(pixel) != 0;
-  };
-  ChosenVessel chosen;
-  wish.um_per_px = fundus_.um_per_px;
-  for (const double beyond : kBeyond) {
-    wish.beyond_px = beyond / px;
-    ChosenVessel other = vesselToTrace(graph.network(), wish);
-    if (other.count > chosen.count) chosen = std::move(other);
-    if (static_cast<double>(chosen.count) * px > kLongEnough) break;  // points are a px apart
-  }
-  if (chosen.count == 0)
-    throw std::invalid_argument("retina: no vessel to trace, apart from its neighbours; take another seed");
-  const Eigen::Vector2d& middle = chosen.middle;
+  const ChosenVessel chosen = chosenVessel(fundus_, border, longest);
   for (const Eigen::Vector2d& place : chosen.centreline) {
-    const Eigen::Vector2d from_middle = px * (place - middle);
+    const Eigen::Vector2d from_middle = px * (place - chosen.middle);
     centreline_.emplace_back(from_middle.x(), from_middle.y(), 0.0);
   }
-  const auto lean = static_cast<std::size_t>(kBeyond[0] / px);
-  const std::size_t from = chosen.first - std::min(chosen.first, lean);
-  const std::size_t to = std::min(centreline_.size(), chosen.first + chosen.count + lean);
-  Eigen::Vector2d view = px * middle;
+  path_begin_ = chosen.first;
+  Eigen::Vector2d view = px * chosen.middle;
   if (camera_.view_x_mm >= 0.0 && camera_.view_y_mm >= 0.0) {
     view = 1e-3 * Eigen::Vector2d(camera_.view_x_mm, camera_.view_y_mm);
   } else {
-    if (follows_vessel) view += besideReflections(from, to, half_view, seed);
+    if (follows_vessel) view += besideReflections(chosen.count, half_view, seed);
     camera_.view_x_mm = 1e3 * view.x();
     camera_.view_y_mm = 1e3 * view.y();
   }
-  for (Eigen::Vector3d& place : centreline_) place.head<2>() += px * middle - view;
-  path_begin_ = chosen.first;
+  for (Eigen::Vector3d& place : centreline_) place.head<2>() += px * chosen.middle - view;
   const auto first = centreline_.begin() + static_cast<std::ptrdiff_t>(path_begin_);
   path_.assign(first, first + static_cast<std::ptrdiff_t>(chosen.count));
 }
 
-// Where the view's middle should lie from the vessel's, so that little of this part of it is out of sight: under
-// reflections, which stay while the eye is turned, or near the view's border, where the instrument is lost.
-Eigen::Vector2d TrialScene::besideReflections(std::size_t from, std::size_t to, const Eigen::Vector2d& half_view,
+// Where the view's middle should lie from the vessel's, so that little of the path and of what a hand leans beyond it
+// is out of sight: under reflections, which stay while the eye is turned, or near the view's border, where the
+// instrument is lost.
+Eigen::Vector2d TrialScene::besideReflections(std::size_t path_points, const Eigen::Vector2d& half_view,
                                               std::uint64_t seed) const
 {
+  const auto lean = static_cast<std::size_t>(kBeyond[0] / (kMicro * fundus_.um_per_px));  // points are a px apart
+  const std::size_t from = path_begin_ - std::min(path_begin_, lean);
+  const std::size_t to = std::min(centreline_.size(), path_begin_ + path_points + lean);
   const simulation::SpecularBlooms blooms = simulation::specularBlooms(camera_, seed);
   const double px = kMicro * um_per_px_;
   const cv::Point2d centre = simulation::imageCentre(camera_);

@@ -44,7 +44,7 @@ class TrialScene {
   Eigen::Vector2d pixelOf(const Eigen::Vector2d& place) const;
 
   void chooseVessel(double longest, bool follows_vessel, std::uint64_t seed);
-  Eigen::Vector2d besideReflections(std::size_t from, std::size_t to, const Eigen::Vector2d& half_view,
+  Eigen::Vector2d besideReflections(std::size_t path_points, const Eigen::Vector2d& half_view,
                                     std::uint64_t seed) const;
 
   simulation::Fundus fundus_;

@@ -2,10 +2,13 @@
 """eyeslam-trial --real-time: trials as fast as time passes, with vision and servo as programs of their own.
 real_time_trial_test.py PROGRAM_FOLDER."""
 import json
+import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 from trial_case import PROGRAMS, SCENARIOS, TRACING, TrialCase, files, rows, small
@@ -76,6 +79,34 @@ class RealTimeTracing(TrialCase):
 
 
 class RealTimeCalls(TrialCase):
+    def test_ctrl_c_ends_it_and_its_programs_and_leaves_nothing(self):
+        out = self.folder / "out"
+        trial = subprocess.Popen([PROGRAMS / "eyeslam-trial", TRACING, *small(aid="hard", duration_s=60), "--real-time",
+                                  "--quiet", "--out", out], stderr=subprocess.PIPE, text=True, start_new_session=True)
+        self.addCleanup(trial.kill)
+        time.sleep(8)  # the scene is made, the programs run
+        self.assertIn("eyeslam-servo", self.group(trial.pid))
+        os.killpg(trial.pid, signal.SIGINT)  # as a terminal does it
+        said = trial.communicate(timeout=60)[1]
+        self.assertEqual(trial.returncode, 1, said)
+        self.assertIn("interrupted", said)
+        self.assertEqual(self.group(trial.pid), [])
+        self.assertFalse((out / "vessel_tracing").exists())
+
+    @staticmethod
+    def group(leader):
+        """The programs of a process group."""
+        names = []
+        for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
+            try:
+                name, rest = stat.read_text().split("(", 1)[1].rsplit(")", 1)
+            except OSError:
+                continue  # it has ended meanwhile
+            state, _, group = rest.split()[:3]
+            if int(group) == leader and state != "Z":
+                names.append(name)
+        return names
+
     def test_what_makes_no_sense_in_real_time_is_refused_by_name(self):
         out = ("--out", self.folder / "out")
         self.assertIn("--jobs", self.refusal(2, TRACING, "--real-time", "--jobs", "2", *out))
