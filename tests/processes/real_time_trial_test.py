@@ -84,7 +84,10 @@ class RealTimeCalls(TrialCase):
         trial = subprocess.Popen([PROGRAMS / "eyeslam-trial", TRACING, *small(aid="hard", duration_s=60), "--real-time",
                                   "--quiet", "--out", out], stderr=subprocess.PIPE, text=True, start_new_session=True)
         self.addCleanup(trial.kill)
-        time.sleep(8)  # the scene is made, the programs run
+        end = time.monotonic() + 60
+        while "eyeslam-track" not in self.group(trial.pid) and time.monotonic() < end:
+            time.sleep(0.2)  # the scene is being made
+        time.sleep(1)
         self.assertIn("eyeslam-servo", self.group(trial.pid))
         os.killpg(trial.pid, signal.SIGINT)  # as a terminal does it
         said = trial.communicate(timeout=60)[1]
