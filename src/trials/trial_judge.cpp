@@ -166,7 +166,7 @@ void TrialJudge::take(const servo_status_t& status)
   if (counts() && status.computation > 0.0) computation_s_.push_back(status.computation);
   has_status_ = true;
   status_ = status;
-  if (!changed || over_) return;
+  if (!changed || over_ || !setting_) return;  // a servo that is there before the trial has a state then, too
   const bool stands = status.state == servo_status_t::HOLD || status.state == servo_status_t::FAULT;
   if (counts()) (status.state == servo_status_t::HOLD ? holds_ : faults_) += stands ? 1 : 0;
   const double t_s = counts_from_ ? time(status.utime) : kMicro * static_cast<double>(status.utime - start_.utime);

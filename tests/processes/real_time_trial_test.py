@@ -60,6 +60,7 @@ class RealTimeTracing(TrialCase):
         report = (self.log.parent / "report.html").read_text()
         self.assertIn("in real time", report)
         self.assertIn("CPU time of the longest cycle", report)
+        self.assertNotRegex(report, r">-?\d{4,}\.\d{3}<", "an event's time counts from the trial's own")
 
     def test_its_tracker_says_the_same_again(self):
         result = self.folder / "again.json"
