@@ -83,7 +83,8 @@ Held hold(const trials::TrialSetting& setting, std::uint64_t seed)
   Held held{inMicrometres(errors_m), inMicrometres(poses_m), record.jumps,  {},
             record.fastest_tip,      record.worst_pivot,     record.frames, record.tracked};
   for (const trials::TrialEvent& event : record.events)
-    if (event.what == "hold" || event.what == "fault") held.stops.push_back(fmt::format("{} {} of seed {}", event.what, event.reason, seed));
+    if (event.what == "hold" || event.what == "fault")
+      held.stops.push_back(fmt::format("{} {} of seed {}", event.what, event.reason, seed));
   return held;
 }
 

@@ -8,8 +8,8 @@
 #include "eyeslam/messaging/micron_messages.h"
 #include "eyeslam/messaging/retina_messages.h"
 #include "eyeslam/messaging/subscription.h"
-#include "real_time/real_time_loop.h"
 #include "real_time/frame_feed.h"
+#include "real_time/real_time_loop.h"
 #include "sim/live_world.h"
 #include "sim/sim_arguments.h"
 

@@ -10,8 +10,8 @@
 #include "eyeslam/messaging/servo_messages.h"
 #include "eyeslam/messaging/subscription.h"
 #include "eyeslam/simulation/hardware.h"
-#include "real_time/real_time_loop.h"
 #include "real_time/frame_feed.h"
+#include "real_time/real_time_loop.h"
 #include "sim/live_task.h"
 #include "sim/tip_errors.h"
 

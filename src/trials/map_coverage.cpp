@@ -36,7 +36,7 @@ std::size_t calibreClass(double calibre_m)
 }
 
 MapCoverage compareMap(const retina::VesselMap& found, const retina::VesselMap& truth,
-                  const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& found_T)
+                       const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& found_T)
 {
   // Each cell of the map that a true vessel or its surroundings fall into.
   const auto cells = static_cast<std::size_t>(found.width) * static_cast<std::size_t>(found.height);

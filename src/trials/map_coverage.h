@@ -28,6 +28,6 @@ struct MapCoverage {
 /// @param truth    all true vessels, um_per_px known
 /// @param found_T  from the truth's map frame (full-resolution px) to that of `found`
 MapCoverage compareMap(const retina::VesselMap& found, const retina::VesselMap& truth,
-                  const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& found_T);
+                       const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& found_T);
 
 }  // namespace eyeslam::trials
