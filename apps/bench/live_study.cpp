@@ -149,7 +149,7 @@ Outcome measured(const LiveInputs& inputs)
   const ScratchFolder scratch("eyeslam_bench");
   const simulation::HardwareOptions options;
   const std::string folder = inputs.programs.empty() ? programFolder() : inputs.programs;
-  const std::string url = fmt::format("udpm://239.255.76.67:{}?ttl=0", 20'000 + getpid() % 40'000);
+  const std::string url = privateUrl();
   const std::string shm = fmt::format("eyeslam_bench_{}", getpid());
   const auto expected = static_cast<std::size_t>(1100.0 * inputs.seconds) + 10'000;
   writeRegistration(goodRegistration(options), scratch.path("camera.json"));

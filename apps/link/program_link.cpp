@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "link/program_link.h"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <random>
 #include <stdexcept>
 #include <utility>
@@ -39,6 +42,11 @@ try {
   return messaging::Link(arguments.url, session, keyOf(arguments));
 } catch (const std::runtime_error& error) {
   throw UsageError(error.what());
+}
+
+std::string privateUrl(int offset)
+{
+  return fmt::format("udpm://239.255.76.67:{}?ttl=0", 20'000 + (getpid() + offset) % 40'000);
 }
 
 std::string unsignedNotice(const LinkArguments& arguments)

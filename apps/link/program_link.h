@@ -31,6 +31,10 @@ std::optional<messaging::Key> keyOf(const LinkArguments& arguments);
 /// @throws UsageError  the URL or the key cannot be used
 messaging::Link openLink(const LinkArguments& arguments, std::int64_t session);
 
+/// An address on this computer alone, for this process and the programs that it starts. @param offset  of its port: for
+/// several in a row
+std::string privateUrl(int offset = 0);
+
 /// One line for people about unsigned messages; empty with a key.
 std::string unsignedNotice(const LinkArguments& arguments);
 

@@ -12,9 +12,9 @@ FrameFeed::FrameFeed(simulation::EyeCamera camera, const std::string& name, doub
       thread_({1000, 0}, [this](const CycleStart&) { return work(); })
 {}
 
-void FrameFeed::show(std::unique_ptr<simulation::FrameDue> due)
+void FrameFeed::show(std::optional<simulation::FrameDue> due)
 {
-  if (due) pending_ = std::move(due);
+  if (due) pending_ = std::make_unique<simulation::FrameDue>(*std::move(due));
   if (pending_ && place_.tryOffer(pending_)) pending_.reset();  // an older one that nobody rendered
 }
 

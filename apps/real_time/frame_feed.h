@@ -22,8 +22,8 @@ class FrameFeed {
   /// @throws files::FileError  the ring cannot be made
   FrameFeed(simulation::EyeCamera camera, const std::string& name, double frames_per_second);
 
-  /// For the hardware's thread, each cycle: hands over a frame without waiting; null: none is new.
-  void show(std::unique_ptr<simulation::FrameDue> due);
+  /// For the hardware's thread, each cycle: hands over a frame without waiting; none: none is new.
+  void show(std::optional<simulation::FrameDue> due);
   /// Frames written so far.
   std::int64_t frames() const { return frames_; }
   /// Whether rendering has failed; end() then says why.

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <memory>
 #include <stdexcept>
 
 #include "command_line/program.h"
@@ -13,8 +12,6 @@
 namespace eyeslam::apps {
 namespace {
 
-constexpr std::int64_t kPeriod_us = 1000;
-constexpr std::int64_t kMostAtOnce = 200;  // of the milliseconds that have passed; a longer pause is one of the world
 constexpr std::int64_t kSettling_steps = 4000;  // after a change of hands nothing counts; as in the loop study
 
 }  // namespace
@@ -59,11 +56,7 @@ simulation::SurgeonTask LiveWorld::surgeonTask(double t_s) const
 bool LiveWorld::cycle(const CycleStart& start)
 {
   link_.drain({start.monotonic, start.utime});
-  const std::int64_t passed = std::min(1 + start.left_out - left_out_, kMostAtOnce);
-  left_out_ = start.left_out;
-  for (std::int64_t i = passed - 1; i >= 0; --i) {
-    step({start.monotonic - i * kPeriod_us, start.utime - i * kPeriod_us});
-  }
+  catch_up_.run(start, [this](std::int64_t monotonic, std::int64_t utime) { step({monotonic, utime}); });
   return setting_.duration_s <= 0.0 || 1e-3 * static_cast<double>(steps_) < setting_.duration_s;
 }
 
@@ -72,8 +65,7 @@ void LiveWorld::step(const messaging::ReceiveTime& now)
   injectFaults();
   hardware_.step(now);
   ++steps_;
-  std::optional<simulation::FrameDue> due = hardware_.frameDue();
-  feed_.show(due ? std::make_unique<simulation::FrameDue>(std::move(*due)) : nullptr);
+  feed_.show(hardware_.frameDue());
   judge();
 }
 

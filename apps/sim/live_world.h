@@ -10,6 +10,7 @@
 #include "eyeslam/messaging/servo_messages.h"
 #include "eyeslam/messaging/subscription.h"
 #include "eyeslam/simulation/hardware.h"
+#include "real_time/catch_up.h"
 #include "real_time/frame_feed.h"
 #include "real_time/real_time_loop.h"
 #include "sim/live_task.h"
@@ -69,7 +70,7 @@ class LiveWorld {
   std::int64_t steps_ = 0;
   std::int64_t guided_since_ = -1;  // step; -1: it is not
   std::int64_t alone_since_ = 0;
-  std::int64_t left_out_ = 0;
+  CatchUp catch_up_;
   Scores scores_;
 };
 

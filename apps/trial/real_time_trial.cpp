@@ -25,19 +25,13 @@ namespace eyeslam::apps {
 namespace {
 
 constexpr std::int64_t kPeriod_us = 1000;
-constexpr std::int64_t kMostAtOnce = 200;  // of the milliseconds that have passed; a longer pause is one of the world
-constexpr double kPatience_s = 20.0;       // until the programs beside have started
+constexpr double kPatience_s = 20.0;  // until the programs beside have started
 constexpr int kTurn_ms = 5;
 constexpr std::size_t kBatch = 16;         // messages that are logged under one time
 constexpr useconds_t kCtrlC_us = 200'000;  // until it is known here
 constexpr int kLastTurns = 40;             // after the end: what is still under way
 constexpr const char* kTracker = "eyeslam-track";
 constexpr const char* kServo = "eyeslam-servo";
-
-std::string addressOf(std::uint64_t seed)
-{
-  return fmt::format("udpm://239.255.76.67:{}?ttl=0", 20'000 + (getpid() + 7 * static_cast<int>(seed % 1000)) % 40'000);
-}
 
 // The program whose MARK START it is; empty for anything else.
 std::string starterIn(const messaging::TappedEvent& event)
@@ -69,7 +63,7 @@ RealTimeTrial::RealTimeTrial(const trials::TrialSetting& setting, const trials::
       name_(name),
       scene_(scene),
       video_(std::move(video)),
-      url_(addressOf(name.seed)),
+      url_(privateUrl(7 * static_cast<int>(name.seed % 1000))),
       shm_(fmt::format("eyeslam_trial_{}_{}", getpid(), name.seed)),
       scratch_("eyeslam_trial"),
       logger_(openLink({url_, ""}, newSession())),
@@ -146,19 +140,17 @@ void RealTimeTrial::startWorld()
                 [this](const CycleStart& start) { return cycle(start); });
 }
 
-// The world goes on by as many milliseconds as have passed, whoever was late.
 bool RealTimeTrial::cycle(const CycleStart& start)
 {
   link_.drain({start.monotonic, start.utime});
-  const std::int64_t passed = std::min(1 + start.left_out - left_out_, kMostAtOnce);
-  left_out_ = start.left_out;
-  for (std::int64_t i = passed - 1; i >= 0 && !world_->isOver(); --i) {
-    const messaging::ReceiveTime now{start.monotonic - i * kPeriod_us, start.utime - i * kPeriod_us};
+  catch_up_.run(start, [this](std::int64_t monotonic, std::int64_t utime) {
+    if (world_->isOver()) return;
+    const messaging::ReceiveTime now{monotonic, utime};
     std::optional<simulation::FrameDue> due = world_->advance(now);
-    if (feed_) feed_->show(due ? std::make_unique<simulation::FrameDue>(std::move(*due)) : nullptr);
+    if (feed_) feed_->show(std::move(due));
     world_->tellTruth(now);
     world_->act(now);
-  }
+  });
   time_s_ = world_->time();
   return !world_->isOver();
 }

@@ -14,6 +14,7 @@
 #include "eyeslam/messaging/event_tap.h"
 #include "eyeslam/messaging/link.h"
 #include "eyeslam/trials/trial_world.h"
+#include "real_time/catch_up.h"
 #include "real_time/frame_feed.h"
 #include "real_time/real_time_loop.h"
 
@@ -62,7 +63,7 @@ class RealTimeTrial {
   std::optional<ChildProgram> tracker_, servo_;
   std::optional<trials::TrialWorld> world_;
   std::atomic<double> time_s_{0.0};
-  std::int64_t left_out_ = 0;
+  CatchUp catch_up_;
   std::optional<RealTimeLoop> loop_;  // last: it uses the others
 };
 

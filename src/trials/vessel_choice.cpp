@@ -238,7 +238,7 @@ ChosenVessel vesselToTrace(const fixtures::VesselNetwork& network, const VesselW
   }
   // Crowding only shortens, and takes longer to find out.
   std::stable_sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.length > b.length; });
-  ChosenVessel best;
+  const Run* best = nullptr;
   double best_worth = 0.0;
   const auto beyond = static_cast<std::ptrdiff_t>(wish.beyond_px), farthest = kBeyonds * beyond;
   for (const Run& run : runs) {
@@ -249,13 +249,16 @@ ChosenVessel vesselToTrace(const fixtures::VesselNetwork& network, const VesselW
         run.length * (1.0 - kCrowded * crowding({begin - beyond, end + beyond}, network, wish.apart_px));
     if (worth <= best_worth) continue;
     best_worth = worth;
-    const auto before = std::min(farthest, begin - ways[run.way].begin());
-    const auto after = std::min(farthest, ways[run.way].end() - end);
-    const Eigen::Vector2d middle = *(begin - before + (before + (end - begin) + after) / 2);
-    best = extended({begin, end}, kFarthest_um / wish.um_per_px, network, wish.um_per_px);
-    best.middle = middle;
+    best = &run;
   }
-  return best;
+  if (!best) return {};
+  const Way& way = ways[best->way];
+  const auto begin = way.begin() + static_cast<std::ptrdiff_t>(best->first);
+  const auto end = begin + static_cast<std::ptrdiff_t>(best->count);
+  ChosenVessel chosen = extended({begin, end}, kFarthest_um / wish.um_per_px, network, wish.um_per_px);
+  const auto from = begin - std::min(farthest, begin - way.begin()), to = end + std::min(farthest, way.end() - end);
+  chosen.middle = *(from + (to - from) / 2);
+  return chosen;
 }
 
 }  // namespace eyeslam::trials
