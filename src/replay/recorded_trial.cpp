@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "eyeslam/replay/recomputed_part.h"
+#include "eyeslam/replay/recorded_configuration.h"
 
 namespace eyeslam::replay {
 namespace {
@@ -19,13 +19,6 @@ bool canBeOtherwise(const std::string& key)
   constexpr const char* kComputed[] = {"servo.", "preparation.", "calibration.", "vision."};
   return std::any_of(std::begin(kComputed), std::end(kComputed),
                      [&key](const char* group) { return key.rfind(group, 0) == 0; });
-}
-
-trials::TrialSetting recordedSetting(const trials::TrialName& name, const mark_t& mark)
-try {
-  return trials::settingOf(name.scenario, mark.configuration);
-} catch (const ConfigurationError& error) {
-  throw ReplayError(fmt::format("MARK START of version {}: {}", mark.version, error.what()));
 }
 
 void requireSameExperiment(trials::TrialSetting recorded, trials::TrialSetting asked)
@@ -46,7 +39,8 @@ std::optional<RecordedTrial> recordedTrial(const mark_t& mark, const std::vector
   const std::optional<trials::TrialName> name =
       mark.kind == mark_t::START ? trials::TrialName::parse(mark.note) : std::nullopt;
   if (!name) return std::nullopt;
-  const trials::TrialSetting recorded = recordedSetting(*name, mark);
+  const trials::TrialSetting recorded =
+      recordedConfiguration(mark, [&name](const std::string& yaml) { return trials::settingOf(name->scenario, yaml); });
   RecordedTrial trial{*name, configuration::applied(recorded, changes), mark.session, mark.utime, mark.version};
   requireSameExperiment(recorded, trial.setting);
   return trial;

@@ -9,6 +9,7 @@
 #include "eyeslam/messaging/record_messages.h"
 #include "eyeslam/replay/log_survey.h"
 #include "eyeslam/replay/message_types.h"
+#include "eyeslam/replay/recorded_configuration.h"
 #include "eyeslam/replay/recorded_trial.h"
 
 namespace eyeslam::replay {
@@ -19,11 +20,9 @@ constexpr const char* kCompared[] = {"MICRON_COMMAND", "LASER_COMMAND", "SERVO_S
 
 bool isMark(std::string_view channel) { return channel == "MARK"; }
 
-servo::ServoConfiguration liveConfiguration(const mark_t& mark)
-try {
-  return configuration::applied(servo::ServoConfiguration{}, configuration::parseYaml(kServo, mark.configuration));
-} catch (const configuration::ConfigurationError& error) {
-  throw ReplayError(fmt::format("MARK START of version {}: {}", mark.version, error.what()));
+servo::ServoConfiguration liveConfiguration(const std::string& yaml)
+{
+  return configuration::applied(servo::ServoConfiguration{}, configuration::parseYaml(kServo, yaml));
 }
 
 }  // namespace
@@ -78,8 +77,9 @@ void ServoReplay::beginTrial(const mark_t& mark)
 
 void ServoReplay::beginLive(const mark_t& mark)
 {
-  timeline_ = std::make_unique<LiveTimeline>(configuration::applied(liveConfiguration(mark), changes_), mark.session,
-                                             mark.utime, comparison_, goals_);
+  timeline_ =
+      std::make_unique<LiveTimeline>(configuration::applied(recordedConfiguration(mark, liveConfiguration), changes_),
+                                     mark.session, mark.utime, comparison_, goals_);
   start_ = mark;
   live_ = true;
   about_ = fmt::format("servo of {} {}, which ran in real time", mark.sender, mark.version);

@@ -8,6 +8,7 @@
 
 #include "eyeslam/messaging/decoding.h"
 #include "eyeslam/messaging/record_messages.h"
+#include "eyeslam/replay/recorded_configuration.h"
 #include "eyeslam/replay/recorded_trial.h"
 
 namespace eyeslam::replay {
@@ -24,14 +25,12 @@ double rateOf(const SideVideo& video, const std::string& path)
   throw ReplayError(fmt::format("{}: says no frame rate; a video of a constant one is wanted", path));
 }
 
-tracking::TrackerOptions liveConfiguration(const mark_t& mark, const std::vector<configuration::Assignment>& changes)
-try {
+tracking::TrackerOptions liveConfiguration(const std::string& yaml)
+{
   std::vector<configuration::Assignment> recorded;
-  for (const configuration::Assignment& one : configuration::parseYaml(kTracker, mark.configuration))
+  for (const configuration::Assignment& one : configuration::parseYaml(kTracker, yaml))
     if (one.key.rfind(kOverlay, 0) != 0) recorded.push_back(one);
-  return configuration::applied(configuration::applied(tracking::TrackerOptions{}, recorded), changes);
-} catch (const configuration::ConfigurationError& error) {
-  throw configuration::ConfigurationError(fmt::format("MARK START of version {}: {}", mark.version, error.what()));
+  return configuration::applied(tracking::TrackerOptions{}, recorded);
 }
 
 std::string offsetWarning(const OffsetEstimate& offset)
@@ -75,7 +74,8 @@ void VideoReplay::takeMark(const SortedEvent& event)
   mark_t mark{};
   if (replay_ || !messaging::decode(event.event.data, event.event.size, mark) || mark.kind != mark_t::START) return;
   if (mark.sender == kTracker) {
-    begin(liveConfiguration(mark, options_.changes), video_.framesPerSecond(), TrackerOrder::live, mark);
+    begin(configuration::applied(recordedConfiguration(mark, liveConfiguration), options_.changes),
+          video_.framesPerSecond(), TrackerOrder::live, mark);
   } else if (const auto trial = recordedTrial(mark, options_.changes); trial && !trial->setting.scenario.isManual()) {
     begin(trial->setting.vision.tracker, trial->setting.hardware.camera.fps, TrackerOrder::lock_step, mark);
   }

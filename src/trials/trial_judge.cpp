@@ -21,6 +21,7 @@ namespace {
 constexpr double kMicro = 1e-6;
 constexpr double kFar = 60e-6;    // issue 17: pulses more than 60 um off
 constexpr double kMoved = 40e-6;  // the same: explained where the retina moved more
+constexpr double kBack = 150e-6;  // back beside the path: as far as a hand leans (loop study, 1)
 constexpr double kPeriod_s = 1e-3;
 constexpr std::int64_t kMostMissing = 10'000;  // milliseconds; a longer gap is another clock's
 
@@ -111,23 +112,27 @@ void TrialJudge::watchSpeed(const truth_t& truth)
   last_world_tip_ = tip;
 }
 
-TipSample TrialJudge::sampleOf(const Eigen::Vector3d& tip, double t_s) const
+// Beside what is to be followed the tip must be on that; beyond its ends, where a hand leans over and nothing is to be
+// followed, on any vessel (loop study: tip to the nearest centreline). Over an end it is beyond until it is back: a
+// vessel that turns there may pass beside the path again.
+TipSample TrialJudge::sampleOf(const Eigen::Vector3d& tip, double t_s)
 {
-  const std::vector<Eigen::Vector3d>& line = scene_->centreline();
+  const std::vector<Eigen::Vector3d>& line = scene_->path();
   TipSample sample{t_s, tip, std::numeric_limits<double>::infinity()};
   if (setting_->scenario.task == "standoff") {
     sample.error = std::abs(tip.z() - line.front().z());
     return sample;
   }
-  std::size_t nearest = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
     const Eigen::Vector3d& next = line[std::min(i + 1, line.size() - 1)];
-    const double distance = distanceToSegment(tip.head<2>(), line[i].head<2>(), next.head<2>());
-    if (distance >= sample.error) continue;
-    sample.error = distance;
-    nearest = i;
+    sample.error = std::min(sample.error, distanceToSegment(tip.head<2>(), line[i].head<2>(), next.head<2>()));
   }
-  sample.on_path = nearest >= scene_->pathBegin() && nearest < scene_->pathBegin() + scene_->path().size();
+  if (setting_->scenario.task != "trace") return sample;
+  const auto from = [&tip](const Eigen::Vector3d& end) { return (tip - end).head<2>().norm(); };
+  const bool over_an_end = sample.error >= std::min(from(line.front()), from(line.back()));
+  beyond_path_ = over_an_end || (beyond_path_ && sample.error > kBack);
+  sample.on_path = !beyond_path_;
+  if (!sample.on_path) sample.error = std::min(sample.error, scene_->centrelineDistance(tip.head<2>()));
   return sample;
 }
 

@@ -74,7 +74,7 @@ class TrialJudge {
   void judgeTip(const truth_t& truth);
   void followPulse(const truth_t& truth);
   bool mayEmit() const;
-  TipSample sampleOf(const Eigen::Vector3d& tip, double t_s) const;
+  TipSample sampleOf(const Eigen::Vector3d& tip, double t_s);
   double time(std::int64_t utime) const { return 1e-6 * static_cast<double>(utime - counts_from_); }
   bool counts() const { return counts_from_ != 0 && !over_; }
 
@@ -104,6 +104,7 @@ class TrialJudge {
   std::vector<simulation::RetinaPose> retina_;  // a millisecond each, from first_truth_ on
   double um_per_px_ = 0.0;
   std::optional<Eigen::Vector3d> last_tip_, last_world_tip_;
+  bool beyond_path_ = false;                      // over an end of it, and not back yet
   double fastest_tip_ = 0.0, worst_pivot_ = 0.0;  // m/s, m
 
   std::map<std::int64_t, SeenFrame> frames_;

@@ -20,7 +20,6 @@ namespace {
 constexpr std::int64_t kWishPeriods = 50;         // 20 Hz (contracts, section 4)
 constexpr double kReady_s = 1.0;                  // then a map is there
 constexpr double kLooks_s = 1.5;                  // at the map, before he chooses
-constexpr std::size_t kIntoPath = 40;             // points of it, some 0.2 mm: there he points at a vessel
 constexpr double kRearm_s = 1.0;                  // until he has understood that the servo holds
 constexpr std::int64_t kSession = 1'000'000'000;  // apart from the servo's, whose channel he shares
 constexpr int kPending = 0;                       // burn_target_t
@@ -91,8 +90,7 @@ void TrialOperator::choose(double t_s, std::int64_t utime)
   if (scenario.isLaser()) {
     if (t_s < scenario.laser.map_s || !plan(utime)) return;
   } else {
-    const std::vector<Eigen::Vector3d>& path = scene_.path();
-    if (needsCamera(scenario) && !point(path[std::min(kIntoPath, path.size() - 1)].head<2>())) return;
+    if (needsCamera(scenario) && !point(scene_.pointedAt().head<2>())) return;
     fixture_.kind = fixtureKind(scenario);
     if (fixture_.kind != FixtureKind::point && fixture_.kind != FixtureKind::vessel) fixture_.point_px.setZero();
     if (scenario.aid == "soft") fixture_.lambda = scenario.lambda;

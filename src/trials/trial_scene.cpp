@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
@@ -15,7 +16,6 @@
 #include "eyeslam/simulation/fundus_photograph.h"
 #include "eyeslam/simulation/procedural_fundus.h"
 #include "eyeslam/trials/loop_trial.h"
-#include "eyeslam/trials/vessel_choice.h"
 
 namespace eyeslam::trials {
 
@@ -36,6 +36,7 @@ constexpr double kSeam = 1.25;                 // of half a view, that must stay
 constexpr double kTurn = 0.2;         // of half a view, so far is the eye turned to get reflections out of the way
 constexpr int kTurns = 4;             // steps of it each way
 constexpr double kInView = 0.75;      // of half a view: within it an instrument is seen well
+constexpr double kFar = 2e-3;         // m, from which no centreline is looked for: the manipulator's reach
 constexpr double kEyeMoves = 150e-6;  // m, under reflections that stay
 
 cv::Mat read(const std::string& path, int mode)
@@ -97,12 +98,18 @@ cv::Mat_<std::uint8_t> brightPlaces(const simulation::Fundus& fundus)
   return bright;
 }
 
-// @param border  m, around it that no vessel is looked for in
-ChosenVessel chosenVessel(const simulation::Fundus& fundus, const Eigen::Vector2d& border, double longest)
+fixtures::VesselNetwork trueVessels(const simulation::Fundus& fundus)
 {
-  const double px = kMicro * fundus.um_per_px;
   fixtures::VesselGraph graph;
   graph.update(mapOf(fundus.calibre_px, fundus.um_per_px));
+  return graph.network();
+}
+
+// @param border  m, around it that no vessel is looked for in
+ChosenVessel chosenVessel(const simulation::Fundus& fundus, const fixtures::VesselNetwork& network,
+                          const Eigen::Vector2d& border, double longest)
+{
+  const double px = kMicro * fundus.um_per_px;
   const Eigen::Vector2d size(fundus.calibre_px.cols, fundus.calibre_px.rows);
   const Eigen::Vector2d inset = (border / px).cwiseMin(0.49 * size);
   const cv::Mat_<std::uint8_t> disc = brightPlaces(fundus);
@@ -115,11 +122,11 @@ ChosenVessel chosenVessel(const simulation::Fundus& fundus, const Eigen::Vector2
   ChosenVessel chosen;
   for (const double beyond : kBeyond) {
     wish.beyond_px = beyond / px;
-    ChosenVessel other = vesselToTrace(graph.network(), wish);
-    if (other.count > chosen.count) chosen = std::move(other);
-    if (static_cast<double>(chosen.count) * px > kLongEnough) break;  // points are a px apart
+    ChosenVessel other = vesselToTrace(network, wish);
+    if (other.centreline.size() > chosen.centreline.size()) chosen = std::move(other);
+    if (static_cast<double>(chosen.centreline.size()) * px > kLongEnough) break;  // points are a px apart
   }
-  if (chosen.count == 0)
+  if (chosen.centreline.empty())
     throw std::invalid_argument("retina: no vessel to trace, apart from its neighbours; take another seed");
   return chosen;
 }
@@ -145,14 +152,12 @@ TrialScene::TrialScene(const TrialSetting& setting, std::uint64_t seed)
   const Eigen::Vector3d above(0.0, 0.0, -kMicro * scenario.standoff_um);
   if (scenario.task == "trace") {
     for (Eigen::Vector3d& place : path_) place += middle_ + above;
-    for (Eigen::Vector3d& place : centreline_) place += middle_ + above;
     return;
   }
-  path_begin_ = 0;
+  pointed_at_ = 0;
   path_ = {middle_ + above};
   if (scenario.task == "standoff") path_ = straightLine(middle_ + above, std::min(2e-3, 1e-3 * scenario.length_mm));
   if (scenario.task == "hold") path_ = {middle_ + above + workingPlace()};
-  centreline_ = path_;
 }
 
 // He puts the middle of the vessel under the microscope, or turns the eye somewhat for what he is to follow; the path
@@ -162,41 +167,39 @@ void TrialScene::chooseVessel(double longest, bool follows_vessel, std::uint64_t
   const double px = kMicro * fundus_.um_per_px;
   const Eigen::Vector2d half_view = 0.5 * um_per_px_ * kMicro * Eigen::Vector2d(camera_.width, camera_.height);
   const Eigen::Vector2d border = kSeam * half_view + Eigen::Vector2d::Constant(1e-3 * camera_.reach_mm);
-  const ChosenVessel chosen = chosenVessel(fundus_, border, longest);
-  for (const Eigen::Vector2d& place : chosen.centreline) {
-    const Eigen::Vector2d from_middle = px * (place - chosen.middle);
-    centreline_.emplace_back(from_middle.x(), from_middle.y(), 0.0);
-  }
-  path_begin_ = chosen.first;
+  fixtures::VesselNetwork network = trueVessels(fundus_);
+  const ChosenVessel chosen = chosenVessel(fundus_, network, border, longest);
   Eigen::Vector2d view = px * chosen.middle;
   if (camera_.view_x_mm >= 0.0 && camera_.view_y_mm >= 0.0) {
     view = 1e-3 * Eigen::Vector2d(camera_.view_x_mm, camera_.view_y_mm);
   } else {
-    if (follows_vessel) view += besideReflections(chosen.count, half_view, seed);
+    if (follows_vessel) view += besideReflections(chosen, half_view, seed);
     camera_.view_x_mm = 1e3 * view.x();
     camera_.view_y_mm = 1e3 * view.y();
   }
-  for (Eigen::Vector3d& place : centreline_) place.head<2>() += px * chosen.middle - view;
-  const auto first = centreline_.begin() + static_cast<std::ptrdiff_t>(path_begin_);
-  path_.assign(first, first + static_cast<std::ptrdiff_t>(chosen.count));
+  for (const Eigen::Vector2d& place : chosen.centreline) {
+    const Eigen::Vector2d from_middle = px * place - view;
+    path_.emplace_back(from_middle.x(), from_middle.y(), 0.0);
+  }
+  pointed_at_ = chosen.clear_at;
+  for (fixtures::Vessel& vessel : network.vessels)
+    for (fixtures::CenterlinePoint& point : vessel.points) point.position_px -= view / px;
+  vessels_ = fixtures::CenterlineIndex(network.vessels, fundus_.um_per_px);
 }
 
 // Where the view's middle should lie from the vessel's, so that little of the path and of what a hand leans beyond it
 // is out of sight: under reflections, which stay while the eye is turned, or near the view's border, where the
 // instrument is lost.
-Eigen::Vector2d TrialScene::besideReflections(std::size_t path_points, const Eigen::Vector2d& half_view,
+Eigen::Vector2d TrialScene::besideReflections(const ChosenVessel& chosen, const Eigen::Vector2d& half_view,
                                               std::uint64_t seed) const
 {
-  const auto lean = static_cast<std::size_t>(kBeyond[0] / (kMicro * fundus_.um_per_px));  // points are a px apart
-  const std::size_t from = path_begin_ - std::min(path_begin_, lean);
-  const std::size_t to = std::min(centreline_.size(), path_begin_ + path_points + lean);
   const simulation::SpecularBlooms blooms = simulation::specularBlooms(camera_, seed);
   const double px = kMicro * um_per_px_;
   const cv::Point2d centre = simulation::imageCentre(camera_);
   const auto hidden = [&](const Eigen::Vector2d& view) {
     std::size_t count = 0;
-    for (std::size_t i = from; i < to; ++i) {
-      const Eigen::Vector2d seen = centreline_[i].head<2>() - view;
+    for (const Eigen::Vector2d& place : chosen.leaned_on) {
+      const Eigen::Vector2d seen = kMicro * fundus_.um_per_px * (place - chosen.middle) - view;
       const bool outside = (seen.cwiseAbs().array() > kInView * half_view.array()).any();
       const cv::Point2d at = centre + cv::Point2d(seen.x() / px, seen.y() / px);
       count += outside || blooms.mayHide(at, kEyeMoves / px);
@@ -240,6 +243,12 @@ double TrialScene::vesselDistance(const Eigen::Vector2d& place) const
                         std::clamp(cvRound(at.y()), 0, distance_px_.rows - 1));
   // Half a px: from a cell's centre to the edge that both share.
   return std::max(0.0, static_cast<double>(distance_px_(pixel)) - 0.5) * picture_.m_per_px;
+}
+
+double TrialScene::centrelineDistance(const Eigen::Vector2d& place) const
+{
+  const auto nearest = vessels_.nearest(place - middle_.head<2>(), kFar);
+  return nearest ? nearest->distance : std::numeric_limits<double>::infinity();
 }
 
 retina::VesselMap TrialScene::trueMap() const

@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "eyeslam/fixtures/centerline_index.h"
 #include "eyeslam/retina/vessel_map.h"
 #include "eyeslam/simulation/fundus.h"
 #include "eyeslam/trials/scenario.h"
 #include "eyeslam/trials/trial_record.h"
+#include "eyeslam/trials/vessel_choice.h"
 
 namespace eyeslam::trials {
 
@@ -28,10 +30,10 @@ class TrialScene {
   /// What the tip is to follow, at the height of the standoff: a true vessel's centreline, a line for standoff; the
   /// place alone for hold and laser.
   const std::vector<Eigen::Vector3d>& path() const { return path_; }
-  /// What the tip is judged by: of a vessel what lies beyond both ends of the path as well, for a hand leans over them.
-  const std::vector<Eigen::Vector3d>& centreline() const { return centreline_; }
-  /// The first point of the path in it.
-  std::size_t pathBegin() const { return path_begin_; }
+  /// Where one points at the path to say which vessel is meant: far from all others.
+  const Eigen::Vector3d& pointedAt() const { return path_[pointed_at_]; }
+  /// From a place to the nearest centreline of any true vessel, m; infinite where none is within 2 mm.
+  double centrelineDistance(const Eigen::Vector2d& place) const;
   const RetinaPicture& picture() const { return picture_; }
   /// Calibre of the widest true vessel within a disc, m; 0 where none is.
   double widestWithin(const Eigen::Vector2d& place, double radius) const;
@@ -44,15 +46,16 @@ class TrialScene {
   Eigen::Vector2d pixelOf(const Eigen::Vector2d& place) const;
 
   void chooseVessel(double longest, bool follows_vessel, std::uint64_t seed);
-  Eigen::Vector2d besideReflections(std::size_t path_points, const Eigen::Vector2d& half_view,
+  Eigen::Vector2d besideReflections(const ChosenVessel& chosen, const Eigen::Vector2d& half_view,
                                     std::uint64_t seed) const;
 
   simulation::Fundus fundus_;
   simulation::EyeCameraOptions camera_;
   double um_per_px_ = 0.0;
   Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3d> path_, centreline_;
-  std::size_t path_begin_ = 0;
+  std::vector<Eigen::Vector3d> path_;
+  std::size_t pointed_at_ = 0;
+  fixtures::CenterlineIndex vessels_;  // true ones
   RetinaPicture picture_;
   cv::Mat_<float> calibre_px_, distance_px_;
 };

@@ -8,7 +8,6 @@
 
 #include "eyeslam/fixtures/centerline_index.h"
 #include "eyeslam/fixtures/vessel_route.h"
-#include "eyeslam/fixtures/vessel_walk.h"
 
 namespace eyeslam::trials {
 
@@ -17,16 +16,15 @@ using Way = std::vector<Eigen::Vector2d>;
 
 namespace {
 
-constexpr int kBeyonds = 4;              // lengths beyond an end within which the way's middle is
-constexpr double kFarthest_um = 2000.0;  // beyond an end that are told: the manipulator's reach
-constexpr double kStraight = 0.77;       // cosine: 40 deg between what lies before and behind a point
-constexpr double kLook_px = 15.0;        // over which a way's direction is taken
-constexpr double kWidest = 2.5;          // of the least radius: no vessel of an eye is wider (facts, D4)
-constexpr double kEven = 1.4;            // of a vessel's median radius
-constexpr double kWider = 1.3;           // of a way's radius: not the way's own next stretch
-constexpr double kBends = 3.0;           // radii from a wider vessel's edge; source: maps of rendered frames, by eye
-constexpr std::size_t kStride = 5;       // points: crowding is no finer
-constexpr double kCrowded = 1.5;         // times its length that a wholly crowded way loses
+constexpr int kBeyonds = 4;         // lengths beyond an end within which the way's middle is
+constexpr double kStraight = 0.77;  // cosine: 40 deg between what lies before and behind a point
+constexpr double kLook_px = 15.0;   // over which a way's direction is taken
+constexpr double kWidest = 2.5;     // of the least radius: no vessel of an eye is wider (facts, D4)
+constexpr double kEven = 1.4;       // of a vessel's median radius
+constexpr double kWider = 1.3;      // of a way's radius: not the way's own next stretch
+constexpr double kBends = 3.0;      // radii from a wider vessel's edge; source: maps of rendered frames, by eye
+constexpr std::size_t kStride = 5;  // points: crowding is no finer
+constexpr double kCrowded = 1.5;    // times its length that a wholly crowded way loses
 
 double radiusAt(const Vessel& vessel, double quantile)
 {
@@ -45,15 +43,36 @@ bool isOneVessel(const Vessel& vessel, const VesselWish& wish)
   return radius >= wish.radius_px && radius <= kWidest * wish.radius_px && radiusAt(vessel, 0.95) <= kEven * radius;
 }
 
-// A vessel and what it goes on into at both ends, straight on through whatever is there.
-Way throughVessel(const fixtures::VesselNetwork& network, std::size_t vessel, double longest_px)
+// From an end of a vessel into what its route goes on into, so far; points are a px apart.
+Way routeBeyond(fixtures::VesselEnd from, const fixtures::VesselRoute& route, const fixtures::VesselNetwork& network,
+                const fixtures::CenterlineIndex& index, double longest_px)
 {
-  const auto own = static_cast<double>(network.vessels[vessel].points.size());
-  const double far_px = 2.0 * own + longest_px;  // points are at most 2 px apart
-  Way way = fixtures::walk(network, vessel, far_px, fixtures::straightest, fixtures::Direction::backwards);
-  way.erase(way.begin(), way.begin() + static_cast<std::ptrdiff_t>(network.vessels[vessel].points.size()));
+  Way way;
+  for (auto next = route.beyond(from); next; next = route.beyond({next->vessel, 1 - next->end})) {
+    const int id = index.id(next->vessel);
+    const Vessel& vessel = *std::find_if(network.vessels.begin(), network.vessels.end(),
+                                         [id](const Vessel& other) { return other.id == id; });
+    for (std::size_t i = 0; i < vessel.points.size(); ++i) {
+      const std::size_t point = next->end == 0 ? i : vessel.points.size() - 1 - i;
+      way.push_back(vessel.points[point].position_px);
+      if (static_cast<double>(way.size()) >= longest_px) return way;
+    }
+  }
+  return way;
+}
+
+// A vessel and what it goes on into at both ends, as a fixture goes that keeps to it.
+Way throughVessel(const Vessel& vessel, const fixtures::VesselNetwork& network, const fixtures::CenterlineIndex& index,
+                  double longest_px)
+{
+  const int number = index.find(vessel.id);
+  if (number < 0) return {};  // without length
+  fixtures::VesselRoute route;
+  route.lay(index, number);
+  Way way = routeBeyond({number, 0}, route, network, index, longest_px);
   std::reverse(way.begin(), way.end());
-  const Way onwards = fixtures::walk(network, vessel, far_px, fixtures::straightest);
+  for (const fixtures::CenterlinePoint& point : vessel.points) way.push_back(point.position_px);
+  const Way onwards = routeBeyond({number, 1}, route, network, index, longest_px);
   way.insert(way.end(), onwards.begin(), onwards.end());
   return way;
 }
@@ -138,19 +157,34 @@ void addRuns(const Way& way, std::size_t number, const std::vector<bool>& good, 
   end(way.size());
 }
 
+// The run and what the way has beyond both its ends, as many points at most.
+Way around(const Way& way, const Run& run, std::size_t beyond)
+{
+  const std::size_t begin = run.first - std::min(run.first, beyond);
+  const std::size_t end = std::min(way.size(), run.first + run.count + beyond);
+  return {way.begin() + static_cast<std::ptrdiff_t>(begin), way.begin() + static_cast<std::ptrdiff_t>(end)};
+}
+
 bool isOn(const Way& way, const Eigen::Vector2d& place)
 {
   return std::any_of(way.begin(), way.end(), [&place](const auto& p) { return (p - place).squaredNorm() < 4.0; });
 }
 
-// Share of the way beside which another vessel runs. What leaves it is on the way at its root, and soon apart.
-double crowding(const Way& way, const fixtures::VesselNetwork& network, double apart_px)
+// Points of other vessels. What leaves the way is on it at its root, and soon apart.
+std::vector<Eigen::Vector2d> othersThan(const Way& way, const fixtures::VesselNetwork& network)
 {
   std::vector<Eigen::Vector2d> others;
   for (const Vessel& vessel : network.vessels) {
     if (isOn(way, vessel.points[vessel.points.size() / 2].position_px)) continue;
     for (std::size_t i = 0; i < vessel.points.size(); i += kStride) others.push_back(vessel.points[i].position_px);
   }
+  return others;
+}
+
+// Share of the way beside which another vessel runs.
+double crowding(const Way& way, const fixtures::VesselNetwork& network, double apart_px)
+{
+  const std::vector<Eigen::Vector2d> others = othersThan(way, network);
   std::size_t crowded = 0, looked = 0;
   for (std::size_t i = 0; i < way.size(); i += kStride, ++looked) {
     crowded += std::any_of(others.begin(), others.end(), [&](const Eigen::Vector2d& other) {
@@ -160,69 +194,26 @@ double crowding(const Way& way, const fixtures::VesselNetwork& network, double a
   return static_cast<double>(crowded) / static_cast<double>(std::max<std::size_t>(looked, 1));
 }
 
-// The vessel that has both points next to each other, and where in it.
-struct PlaceOn {
-  const Vessel* vessel = nullptr;
-  std::ptrdiff_t point = 0, step = 0;  // of the second one; from the first one to it
-};
-
-PlaceOn placeOf(const Eigen::Vector2d& before, const Eigen::Vector2d& at, const fixtures::VesselNetwork& network)
+std::size_t clearestOf(const Way& way, const fixtures::VesselNetwork& network)
 {
-  for (const Vessel& vessel : network.vessels) {
-    for (std::size_t i = 1; i < vessel.points.size(); ++i) {
-      const Eigen::Vector2d &a = vessel.points[i - 1].position_px, &b = vessel.points[i].position_px;
-      const auto index = static_cast<std::ptrdiff_t>(i);
-      if (a == before && b == at) return {&vessel, index, 1};
-      if (a == at && b == before) return {&vessel, index - 1, -1};
-    }
+  const std::vector<Eigen::Vector2d> others = othersThan(way, network);
+  std::size_t clearest = way.size() / 2;
+  double farthest_sq = 0.0;
+  for (std::size_t i = 0; i < way.size() && !others.empty(); ++i) {
+    double nearest_sq = HUGE_VAL;
+    for (const Eigen::Vector2d& other : others) nearest_sq = std::min(nearest_sq, (other - way[i]).squaredNorm());
+    if (nearest_sq <= farthest_sq) continue;
+    farthest_sq = nearest_sq;
+    clearest = i;
   }
-  return {};
-}
-
-// On from the end of a way, so far.
-Way wayOn(const Way& way, double longest_px, const fixtures::VesselNetwork& network,
-          const fixtures::CenterlineIndex& index)
-{
-  PlaceOn at = placeOf(way[way.size() - 2], way.back(), network);
-  if (!at.vessel) return {};
-  fixtures::VesselRoute route;
-  route.lay(index, index.find(at.vessel->id));
-  Way beyond;
-  for (;;) {
-    const auto points = static_cast<std::ptrdiff_t>(at.vessel->points.size());
-    for (at.point += at.step; at.point >= 0 && at.point < points; at.point += at.step) {
-      beyond.push_back(at.vessel->points[static_cast<std::size_t>(at.point)].position_px);
-      if (static_cast<double>(beyond.size()) >= longest_px) return beyond;  // points are a px apart
-    }
-    const auto next = route.beyond({index.find(at.vessel->id), at.step > 0 ? 1 : 0});
-    if (!next) return beyond;
-    const int id = index.id(next->vessel);
-    const auto vessel = std::find_if(network.vessels.begin(), network.vessels.end(),
-                                     [id](const Vessel& other) { return other.id == id; });
-    at = {&*vessel, next->end == 0 ? 0 : static_cast<std::ptrdiff_t>(vessel->points.size()) - 1,
-          next->end == 0 ? 1 : -1};
-  }
-}
-
-// With what lies beyond both ends.
-ChosenVessel extended(const Way& path, double longest_px, const fixtures::VesselNetwork& network, double um_per_px)
-{
-  const fixtures::CenterlineIndex index(network.vessels, um_per_px);
-  ChosenVessel chosen;
-  chosen.centreline = wayOn({path.rbegin(), path.rend()}, longest_px, network, index);
-  std::reverse(chosen.centreline.begin(), chosen.centreline.end());
-  chosen.first = chosen.centreline.size();
-  chosen.count = path.size();
-  chosen.centreline.insert(chosen.centreline.end(), path.begin(), path.end());
-  const Way after = wayOn(path, longest_px, network, index);
-  chosen.centreline.insert(chosen.centreline.end(), after.begin(), after.end());
-  return chosen;
+  return clearest;
 }
 
 }  // namespace
 
 ChosenVessel vesselToTrace(const fixtures::VesselNetwork& network, const VesselWish& wish)
 {
+  const fixtures::CenterlineIndex index(network.vessels, wish.um_per_px);
   const auto clear = clearPoints(network, wish);
   std::vector<double> radii_px;
   for (const Vessel& vessel : network.vessels) radii_px.push_back(radiusAt(vessel, 0.5));
@@ -230,7 +221,7 @@ ChosenVessel vesselToTrace(const fixtures::VesselNetwork& network, const VesselW
   std::vector<Run> runs;
   for (std::size_t i = 0; i < network.vessels.size(); ++i) {
     if (!isOneVessel(network.vessels[i], wish)) continue;
-    ways.push_back(throughVessel(network, i, wish.longest_px + kBeyonds * wish.beyond_px));
+    ways.push_back(throughVessel(network.vessels[i], network, index, wish.longest_px + kBeyonds * wish.beyond_px));
     std::vector<bool> good = freeBothWays(ways.back(), crossings(ways.back(), radii_px[i], network, radii_px), wish);
     for (std::size_t k = 0; k < good.size(); ++k)
       good[k] = good[k] && clear.count({ways.back()[k].x(), ways.back()[k].y()}) > 0;
@@ -240,25 +231,19 @@ ChosenVessel vesselToTrace(const fixtures::VesselNetwork& network, const VesselW
   std::stable_sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.length > b.length; });
   const Run* best = nullptr;
   double best_worth = 0.0;
-  const auto beyond = static_cast<std::ptrdiff_t>(wish.beyond_px), farthest = kBeyonds * beyond;
+  const auto beyond = static_cast<std::size_t>(wish.beyond_px);
   for (const Run& run : runs) {
     if (run.length <= best_worth) break;
-    const auto begin = ways[run.way].begin() + static_cast<std::ptrdiff_t>(run.first);
-    const auto end = begin + static_cast<std::ptrdiff_t>(run.count);
     const double worth =
-        run.length * (1.0 - kCrowded * crowding({begin - beyond, end + beyond}, network, wish.apart_px));
+        run.length * (1.0 - kCrowded * crowding(around(ways[run.way], run, beyond), network, wish.apart_px));
     if (worth <= best_worth) continue;
     best_worth = worth;
     best = &run;
   }
   if (!best) return {};
   const Way& way = ways[best->way];
-  const auto begin = way.begin() + static_cast<std::ptrdiff_t>(best->first);
-  const auto end = begin + static_cast<std::ptrdiff_t>(best->count);
-  ChosenVessel chosen = extended({begin, end}, kFarthest_um / wish.um_per_px, network, wish.um_per_px);
-  const auto from = begin - std::min(farthest, begin - way.begin()), to = end + std::min(farthest, way.end() - end);
-  chosen.middle = *(from + (to - from) / 2);
-  return chosen;
+  const Way path = around(way, *best, 0), near = around(way, *best, kBeyonds * beyond);
+  return {path, around(way, *best, beyond), clearestOf(path, network), near[near.size() / 2]};
 }
 
 }  // namespace eyeslam::trials

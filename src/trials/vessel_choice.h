@@ -25,14 +25,14 @@ struct VesselWish {
 
 /// A stretch of a vessel.
 struct ChosenVessel {
-  std::vector<Eigen::Vector2d>
-      centreline;  ///< what is to be traced, and of what lies beyond both ends as much as a hand may lean
-  std::size_t first = 0, count = 0;                  ///< of it, what is to be traced; count 0: nothing is wide enough
+  std::vector<Eigen::Vector2d> centreline;  ///< what is to be traced; empty: nothing is wide enough
+  std::vector<Eigen::Vector2d> leaned_on;   ///< the same and what it goes on into, as far as is wished for and is there
+  std::size_t clear_at = 0;                 ///< of the centreline, farthest from all others: there one points at it
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();  ///< of its straight part
 };
 
-/// Straight on through junctions, cut where it turns sharply; beyond both ends as a fixture goes that keeps to the
-/// vessel (fixtures::VesselRoute), for there a human means no other.
+/// A vessel as a fixture goes that keeps to it (fixtures::VesselRoute), for a human means no other; cut where it turns
+/// sharply.
 ChosenVessel vesselToTrace(const fixtures::VesselNetwork& network, const VesselWish& wish);
 
 }  // namespace eyeslam::trials

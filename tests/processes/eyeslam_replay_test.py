@@ -80,6 +80,14 @@ class ReplayCase(LiveCase):
     def channels(self, log):
         return {channel["name"]: channel for channel in self.survey(log)["channels"]}
 
+    def cost(self, *arguments):
+        """Peak memory, MB, and CPU time, s."""
+        process = subprocess.Popen([os.path.join(FOLDER, "eyeslam-replay"), *arguments, "--quiet"])
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        self.assertEqual(process.returncode, 0)
+        return usage.ru_maxrss / 1024, usage.ru_utime + usage.ru_stime
+
 
 class OneLog(ReplayCase):
     def test_survey_counts_what_is_there(self):
@@ -179,14 +187,6 @@ class LongLogs(ReplayCase):
                                         for utime, channel, data in events))
         return 1e-6 * length * copies
 
-    def cost(self, *arguments):
-        """Peak memory, MB, and CPU time, s."""
-        process = subprocess.Popen([os.path.join(FOLDER, "eyeslam-replay"), *arguments, "--quiet"])
-        _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        self.assertEqual(process.returncode, 0)
-        return usage.ru_maxrss / 1024, usage.ru_utime + usage.ru_stime
-
     def test_take_no_more_memory_and_a_fraction_of_their_time(self):
         self.long_log("short.lcm", 2)
         duration = self.long_log("long.lcm", 40)
@@ -279,6 +279,15 @@ class ComputedAgain(ReplayCase):
         self.assertIn("goal_x_m", {field["name"] for field in channels["MICRON_COMMAND"]["fields"]})
         self.assert_refused(self.call("eyeslam-replay", self.log(), "--set", "motion=jerky"), 2, "motion", "recorded")
         self.assert_refused(self.call("eyeslam-replay", self.log(), "--set", "servo.no_such=1"), 2, "servo.no_such")
+
+    def test_takes_no_more_memory_for_a_longer_log(self):
+        length = 1e-6 * (lambda events: events[-1][0] - events[0][0])(list(lcm_log.read(self.log())))
+        self.replay("cut", self.log(), "--to", str(0.5 * length), "--out", self.path("half.lcm"))
+        half, _ = self.cost(self.path("half.lcm"))
+        whole, seconds = self.cost(self.log())
+        size = 0.5e-6 * os.path.getsize(self.log())
+        print(f"\n{length:.0f} s in {seconds:.2f} s of CPU time, {whole:.0f} MB (half of it: {half:.0f} MB; half the log: {size:.0f} MB)")
+        self.assertLess(whole, half + 0.5 * size)
 
     def test_a_report_is_that_of_the_trial_but_for_the_time_it_took(self):
         self.replay("report", self.log(), "--out", self.path("report"))

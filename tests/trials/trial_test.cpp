@@ -18,6 +18,7 @@
 #include "eyeslam/trials/error_figures.h"
 #include "eyeslam/trials/lock_step_time.h"
 #include "eyeslam/trials/trial_marks.h"
+#include "support/encoded_message.h"
 #include "support/short_trial.h"
 
 namespace eyeslam::trials {
@@ -114,6 +115,59 @@ TEST(TrialJudge, DrawsBurnsOutByTheWayOfTheSpot)
     EXPECT_GT(pulse.length, burn);
     EXPECT_LT(pulse.length, burn + 60e-6);  // of tremor that is left, within a pulse
   }
+}
+
+// What the judge says at the end of a trial whose tip had been at these places, as long at each.
+TipSample judgedAt(const std::vector<Eigen::Vector2d>& places)
+{
+  constexpr std::size_t kCounted = 900;  // ms at the end
+  TrialJudge judge(traced().scene);
+  const auto total =
+      static_cast<std::size_t>(std::count_if(traced().events.begin(), traced().events.end(), [](const KeptEvent& kept) {
+        return kept.channel == messaging::channelOf<truth_t>();
+      }));
+  std::size_t number = 0;
+  for (const KeptEvent& kept : traced().events) {
+    truth_t truth{};
+    if (kept.channel != messaging::channelOf<truth_t>()) {
+      judge.take(kept.event());
+      continue;
+    }
+    const files::LogEvent event = kept.event();
+    EXPECT_TRUE(messaging::decode(event.data, event.size, truth));
+    const std::size_t left = total - ++number;
+    const std::size_t at = left < kCounted ? (kCounted - 1 - left) * places.size() / kCounted : 0;
+    std::copy_n(places[at].data(), 2, truth.tip);
+    const support::Bytes bytes = support::encodedMessage(truth);
+    judge.take({kept.number, kept.utime, kept.channel, bytes.data(), bytes.size()});
+  }
+  return judge.record().tip.back();
+}
+
+TEST(TrialJudge, WantsTheTipOnThePathBesideItAndOnAnyVesselBeyondItsEnds)
+{
+  const TrialScene& scene = *traced().scene;
+  const Eigen::Vector2d end = scene.path().back().head<2>(), near = scene.path()[scene.path().size() - 15].head<2>();
+  const Eigen::Vector2d on = (end - near).normalized(), aside(-on.y(), on.x());
+  // Beside the path another vessel would be no better: told as it is.
+  const TipSample beside = judgedAt({near + 10e-6 * aside});
+  EXPECT_TRUE(beside.on_path);
+  EXPECT_NEAR(beside.error, 10e-6, 1e-6);
+  double nearest_vessel = 1.0, farthest_vessel = 0.0;
+  for (const double ahead : {100e-6, 200e-6, 300e-6}) {
+    const Eigen::Vector2d place = end + ahead * on;
+    const TipSample beyond = judgedAt({place});
+    EXPECT_FALSE(beyond.on_path);
+    EXPECT_EQ(beyond.error, std::min(scene.centrelineDistance(place), (place - end).norm()));
+    nearest_vessel = std::min(nearest_vessel, beyond.error);
+    farthest_vessel = std::max(farthest_vessel, (place - end).norm());
+  }
+  EXPECT_LT(nearest_vessel, 0.5 * farthest_vessel) << "the vessel goes on, so that it must have been looked for";
+  // A vessel that turns beyond an end passes beside the path again.
+  const Eigen::Vector2d again = scene.path()[scene.path().size() / 2].head<2>() + 200e-6 * aside;
+  EXPECT_TRUE(judgedAt({again}).on_path);
+  EXPECT_FALSE(judgedAt({end + 300e-6 * on, again}).on_path);
+  EXPECT_TRUE(judgedAt({end + 300e-6 * on, near, again}).on_path);
 }
 
 TEST(Trial, ScoresTheAidedHandAgainstTheTruth)

@@ -40,12 +40,6 @@ VesselWish wish()
   return wish;
 }
 
-std::vector<Vector2d> traced(const ChosenVessel& chosen)
-{
-  const auto first = chosen.centreline.begin() + static_cast<std::ptrdiff_t>(chosen.first);
-  return {first, first + static_cast<std::ptrdiff_t>(chosen.count)};
-}
-
 double lengthOf(const std::vector<Vector2d>& way)
 {
   double length = 0.0;
@@ -59,7 +53,7 @@ TEST(VesselChoice, TakesTheLongestOfVesselsThatAreAlone)
       vesselToTrace(networkOf({wide(1, {{100, 200}, {600, 200}}), wide(2, {{100, 500}, {900, 500}}),
                                wide(3, {{100, 800}, {700, 800}})}),
                     wish());
-  ASSERT_GT(chosen.count, 0U);
+  ASSERT_FALSE(chosen.centreline.empty());
   for (const Vector2d& place : chosen.centreline) EXPECT_NEAR(place.y(), 500.0, 1e-9);
 }
 
@@ -69,7 +63,7 @@ TEST(VesselChoice, TakesAShorterVesselRatherThanOneThatRunsBesideAnother)
   const std::vector<Vessel> vessels{wide(1, {{100, 200}, {900, 200}}), wide(2, {{100, 230}, {900, 230}}),
                                     wide(3, {{100, 800}, {600, 800}})};
   const ChosenVessel chosen = vesselToTrace(networkOf(vessels), wish());
-  ASSERT_GT(chosen.count, 0U);
+  ASSERT_FALSE(chosen.centreline.empty());
   EXPECT_NEAR(chosen.centreline.front().y(), 800.0, 1e-9);
   VesselWish careless = wish();
   careless.apart_px = 20.0;
@@ -83,19 +77,19 @@ TEST(VesselChoice, CountsNeighboursThatAreTooThinToTrace)
       vesselToTrace(networkOf({wide(1, {{100, 200}, {900, 200}}), wide(2, {{100, 230}, {900, 230}}, {-1, -1}, 2.0),
                                wide(3, {{100, 800}, {600, 800}})}),
                     wish());
-  ASSERT_GT(chosen.count, 0U);
+  ASSERT_FALSE(chosen.centreline.empty());
   EXPECT_NEAR(chosen.centreline.front().y(), 800.0, 1e-9);
 }
 
 TEST(VesselChoice, CutsTheWayWhereItTurnsSharply)
 {
   const ChosenVessel chosen = vesselToTrace(networkOf({wide(1, {{100, 200}, {500, 200}, {500, 1100}})}), wish());
-  const std::vector<Vector2d> way = traced(chosen);
+  const std::vector<Vector2d> way = chosen.centreline;
   ASSERT_GT(way.size(), 700U) << "the longer limb";
   for (const Vector2d& place : way) EXPECT_NEAR(place.x(), 500.0, 1e-9) << place.transpose();
   // A bend of 20 degrees is none.
   const Vector2d corner(500, 200), end = corner + 900.0 * Vector2d(std::cos(0.35), std::sin(0.35));
-  EXPECT_GT(lengthOf(traced(vesselToTrace(networkOf({wide(1, {{100, 200}, corner, end})}), wish()))), 1100.0);
+  EXPECT_GT(lengthOf(vesselToTrace(networkOf({wide(1, {{100, 200}, corner, end})}), wish()).centreline), 1100.0);
 }
 
 TEST(VesselChoice, KeepsWhatIsWishedOfTheVesselBeyondBothEnds)
@@ -104,14 +98,16 @@ TEST(VesselChoice, KeepsWhatIsWishedOfTheVesselBeyondBothEnds)
     VesselWish limited = wish();
     limited.longest_px = longest;
     const ChosenVessel chosen = vesselToTrace(networkOf({wide(1, {{100, 200}, {900, 200}})}), limited);
-    ASSERT_GT(chosen.count, 1U);
-    const std::size_t after = chosen.centreline.size() - chosen.first - chosen.count;
-    for (const std::size_t beyond : {chosen.first, after}) EXPECT_GE(beyond, static_cast<std::size_t>(kBeyond));
-    EXPECT_NEAR(lengthOf(chosen.centreline), 800.0, 2.0) << "all of it is told";
+    EXPECT_NEAR(lengthOf(chosen.centreline), std::min(longest, 800.0 - 2 * kBeyond), 2.0);
+    ASSERT_GT(chosen.centreline.size(), 1U);
+    for (const bool front : {true, false}) {
+      const Vector2d end = front ? chosen.centreline.front() : chosen.centreline.back();
+      const Vector2d beyond = front ? chosen.leaned_on.front() : chosen.leaned_on.back();
+      EXPECT_NEAR((beyond - end).norm(), kBeyond, 2.0);
+    }
     EXPECT_LT((chosen.middle - Vector2d(500, 200)).norm(), longest > 1000 ? 2.0 : 400.0);
-    EXPECT_NEAR(lengthOf(traced(chosen)), std::min(longest, 800.0 - 2 * kBeyond), 2.0);
   }
-  EXPECT_EQ(vesselToTrace(networkOf({wide(1, {{100, 200}, {100 + 2 * kBeyond, 200}})}), wish()).count, 0U)
+  EXPECT_EQ(vesselToTrace(networkOf({wide(1, {{100, 200}, {100 + 2 * kBeyond, 200}})}), wish()).centreline.size(), 0U)
       << "too short to go on beyond both ends";
 }
 
@@ -122,21 +118,33 @@ TEST(VesselChoice, GoesStraightOnThroughAJunction)
       vesselToTrace(networkOf({wide(1, {{100, 500}, junction}, {-1, 7}), wide(2, {junction, {900, 500}}, {7, -1}),
                                wide(3, {junction, {650, 950}}, {7, -1})}),
                     wish());
-  EXPECT_NEAR(lengthOf(traced(chosen)), 800.0 - 2 * kBeyond, 2.0);
+  EXPECT_NEAR(lengthOf(chosen.centreline), 800.0 - 2 * kBeyond, 2.0);
   for (const Vector2d& place : chosen.centreline) EXPECT_NEAR(place.y(), 500.0, 1e-9);
 }
 
+// At a fork a map may have either branch nearest.
+TEST(VesselChoice, TellsWhereOnItOneIsFarFromOthers)
+{
+  const Vector2d fork(500, 500);
+  const ChosenVessel chosen =
+      vesselToTrace(networkOf({wide(1, {{100, 500}, fork}, {-1, 7}), wide(2, {fork, {900, 500}}, {7, -1}),
+                               wide(3, {fork, {850, 950}}, {7, -1})}),
+                    wish());
+  ASSERT_FALSE(chosen.centreline.empty());
+  EXPECT_NEAR(chosen.centreline[chosen.clear_at].x(), 100.0 + kBeyond, 1.0);
+}
+
 // At its end it divides: one of the two is as wide as it is, the other one straighter.
-TEST(VesselChoice, GoesOnBeyondItsEndsAsAFixtureThatKeepsToItWould)
+TEST(VesselChoice, GoesOnAsAFixtureThatKeepsToItWould)
 {
   const Vector2d fork(700, 500);
   const ChosenVessel chosen =
       vesselToTrace(networkOf({wide(1, {{100, 500}, fork}, {-1, 7}), wide(2, {fork, {850, 560}}, {7, -1}),
                                support::vesselThrough(3, {fork, {850, 450}}, {7, -1}, 2.0)}),
                     wish());
-  ASSERT_GT(chosen.count, 1U);
-  const bool backwards = chosen.centreline.front().x() > chosen.centreline.back().x();
-  const Vector2d end = backwards ? chosen.centreline.front() : chosen.centreline.back();
+  ASSERT_FALSE(chosen.centreline.empty());
+  const bool backwards = chosen.leaned_on.front().x() > chosen.leaned_on.back().x();
+  const Vector2d end = backwards ? chosen.leaned_on.front() : chosen.leaned_on.back();
   EXPECT_LT((end - Vector2d(850, 560)).norm(), 1e-6) << end.transpose();
 }
 
@@ -145,7 +153,7 @@ TEST(VesselChoice, EndsFarFromAWiderVesselAcrossItsWay)
   for (const double crossing : {700.0, 1900.0}) {  // the second is elsewhere
     const std::vector<Vessel> vessels{wide(1, {{100, 400}, {1100, 400}}),
                                       wide(2, {{crossing, 0}, {crossing, 800}}, {-1, -1}, 13.0)};
-    const std::vector<Vector2d> way = traced(vesselToTrace(networkOf(vessels), wish()));
+    const std::vector<Vector2d> way = vesselToTrace(networkOf(vessels), wish()).centreline;
     ASSERT_GT(way.size(), 100U);
     const double end = std::max(way.front().x(), way.back().x());
     EXPECT_NEAR(end, crossing < 1100.0 ? 700.0 - 13.0 - 3.0 * 6.0 - kBeyond : 1100.0 - kBeyond, 8.0);
@@ -155,7 +163,7 @@ TEST(VesselChoice, EndsFarFromAWiderVesselAcrossItsWay)
 TEST(VesselChoice, EndsFarFromABend)
 {
   const std::vector<Vector2d> way =
-      traced(vesselToTrace(networkOf({wide(1, {{100, 200}, {900, 200}, {900, 300}})}), wish()));
+      vesselToTrace(networkOf({wide(1, {{100, 200}, {900, 200}, {900, 300}})}), wish()).centreline;
   ASSERT_GT(way.size(), 100U);
   for (const Vector2d& place : way) EXPECT_LT(place.x(), 900.0 - kBeyond + 1.0) << place.transpose();
 }
@@ -164,15 +172,15 @@ TEST(VesselChoice, StaysWithinItsArea)
 {
   VesselWish small = wish();
   small.area_px = Eigen::AlignedBox2d(Vector2d(300.0, 100.0), Vector2d(450.0, 300.0));
-  const std::vector<Vector2d> way = traced(vesselToTrace(networkOf({wide(1, {{100, 200}, {900, 200}})}), small));
+  const std::vector<Vector2d> way = vesselToTrace(networkOf({wide(1, {{100, 200}, {900, 200}})}), small).centreline;
   ASSERT_GT(way.size(), 100U);
   for (const Vector2d& place : way) EXPECT_TRUE(small.area_px.contains(place));
 }
 
 TEST(VesselChoice, FindsNothingWhereNothingIsWideEnough)
 {
-  EXPECT_EQ(vesselToTrace(networkOf({wide(1, {{100, 200}, {900, 200}}, {-1, -1}, 4.0)}), wish()).count, 0U);
-  EXPECT_EQ(vesselToTrace({}, wish()).count, 0U);
+  EXPECT_EQ(vesselToTrace(networkOf({wide(1, {{100, 200}, {900, 200}}, {-1, -1}, 4.0)}), wish()).centreline.size(), 0U);
+  EXPECT_EQ(vesselToTrace({}, wish()).centreline.size(), 0U);
 }
 
 }  // namespace
