@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """results.py [--in-situ] [PART...]: measures on the sequences of ../shared/sequences and writes docs/results.md.
 
-The parts: tracking, paper_method, methods, detectors, guidance, plans, loop, rendered_loop, processes, trials; without any, all. What is not measured again is
-taken from out/results/PART.md. Errors and maps are judged by ../shared/score.py; the command of each figure stands beside it.
-Needs a release build. With --in-situ, of the trials only those in situ at 30 Hz: 30 core-minutes, not two hours.
+The parts: tracking, paper_method, methods, detectors, guidance, plans, loop, rendered_loop, processes, trials; without
+any, all. What is not measured again stays as the document has it, between its line `<!-- PART -->` and the next one.
+Errors and maps are judged by ../shared/score.py; the command of each figure stands beside it. Needs a release build. With --in-situ, of the trials only those in situ at 30 Hz: 30 core-minutes, not two hours.
 """
 import csv
 import datetime
@@ -12,6 +12,7 @@ import json
 import os
 import pathlib
 import platform
+import re
 import statistics
 import subprocess
 import sys
@@ -25,6 +26,7 @@ SHARED = ROOT.parent / "shared"
 PROGRAMS = ROOT / "build" / "release" / "apps"
 TRACK = PROGRAMS / "eyeslam-track"
 OUT = ROOT / "out" / "results"
+DOCUMENT = ROOT / "docs" / "results.md"
 SNAPSHOTS = (60, 150)
 # RMS px and deg that must hold on these and on other retinas.
 GATES = {"paper": (0.05, 0.010), "human": (0.07, 0.015), "human2": (0.07, 0.015), "laser": (0.13, 0.02),
@@ -282,6 +284,11 @@ def head():
     yield "Braun et al., EyeSLAM, Int J Med Robot 2018; 14(1), e1848 (PMC5762412).\n"
 
 
+def kept_parts():
+    _, *pieces = re.split(r"^<!-- (\w+) -->\n", DOCUMENT.read_text(), flags=re.M)
+    return {name: text.rstrip("\n") + "\n" for name, text in zip(pieces[::2], pieces[1::2])}
+
+
 def main():
     available = sorted(path.name for path in (SHARED / "sequences").glob("*") if path.is_dir())
     if not available or not TRACK.exists():
@@ -292,10 +299,9 @@ def main():
         sys.exit(f"results.py: no part {unknown[0]}; one of {', '.join(PARTS)}")
     OUT.mkdir(parents=True, exist_ok=True)
     for name in wanted:
-        (OUT / f"{name}.md").write_text("\n".join(PARTS[name](available)) + "\n")
-    kept = [OUT / f"{name}.md" for name in PARTS]
-    text = "\n".join(head()) + "\n" + "\n".join(path.read_text() for path in kept if path.exists())
-    (ROOT / "docs" / "results.md").write_text(text)
+        text = "\n".join(PARTS[name](available)) + "\n"
+        parts = kept_parts() | {name: text}
+        DOCUMENT.write_text("\n".join([*head(), *(f"<!-- {part} -->\n{parts[part]}" for part in PARTS if part in parts)]))
     print("docs/results.md")
 
 
