@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""results.py [--in-situ] [PART...]: measures on the sequences of ../shared/sequences and writes docs/results.md.
+"""results.py [PART...]: measures on the sequences of ../shared/sequences and writes docs/results.md.
 
 The parts: tracking, paper_method, methods, detectors, guidance, plans, loop, rendered_loop, processes, trials; without
 any, all. What is not measured again stays as the document has it, between its line `<!-- PART -->` and the next one.
-Errors and maps are judged by ../shared/score.py; the command of each figure stands beside it. Needs a release build. With --in-situ, of the trials only those in situ at 30 Hz: 30 core-minutes, not two hours.
+Errors and maps are judged by ../shared/score.py; the command of each figure stands beside it. Needs a release build.
+The trials alone take three core-hours.
 """
 import csv
 import datetime
@@ -270,7 +271,7 @@ def processes(names):
 
 
 def trials(names):
-    yield from trial_tables.trials(trial_tables.IN_SITU if "--in-situ" in sys.argv else trial_tables.STUDIES)
+    yield from trial_tables.trials(trial_tables.STUDIES)
 
 
 PARTS = {part.__name__: part
@@ -286,6 +287,8 @@ def head():
 
 def kept_parts():
     _, *pieces = re.split(r"^<!-- (\w+) -->\n", DOCUMENT.read_text(), flags=re.M)
+    if not pieces:
+        sys.exit(f"results.py: {DOCUMENT}: no line <!-- PART -->, so that what it has would be lost; take it from the history")
     return {name: text.rstrip("\n") + "\n" for name, text in zip(pieces[::2], pieces[1::2])}
 
 
@@ -293,7 +296,7 @@ def main():
     available = sorted(path.name for path in (SHARED / "sequences").glob("*") if path.is_dir())
     if not available or not TRACK.exists():
         sys.exit("results.py: needs ../shared/sequences and a release build (cmake --build --preset release)")
-    wanted = [argument for argument in sys.argv[1:] if argument != "--in-situ"] or list(PARTS)
+    wanted = sys.argv[1:] or list(PARTS)
     unknown = [name for name in wanted if name not in PARTS]
     if unknown:
         sys.exit(f"results.py: no part {unknown[0]}; one of {', '.join(PARTS)}")

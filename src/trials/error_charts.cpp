@@ -102,7 +102,8 @@ void drawOverTime(const std::vector<const TrialRecord*>& trials, const Box& plot
   for (const TrialRecord* trial : trials)
     if (!trial->tip.empty()) end_s = std::max(end_s, trial->tip.back().t_s);
   SvgChart chart(canvas, plot, {"time (s)", 0.0, end_s}, Axis::fromZero("error (\u00b5m)", greatestOf(trials)));
-  shadeFastMotion(*trials.back(), chart);
+  const bool alone = trials.size() == 1;  // each trial is of another stretch of the eye's motion
+  if (alone) shadeFastMotion(*trials.back(), chart);
   chart.title(title);
   chart.axes();
   std::vector<Key> keys;
@@ -111,7 +112,7 @@ void drawOverTime(const std::vector<const TrialRecord*>& trials, const Box& plot
     keys.push_back({styleOf(trial->score.aid).name, Paint::line(styleOf(trial->score.aid).colour, 3.0)});
   }
   markEvents(trials, end_s, chart);
-  keys.push_back({"fast motion of the retina", Paint::area(kFastMotion)});
+  if (alone) keys.push_back({"fast motion of the retina", Paint::area(kFastMotion)});
   chart.legend(keys);
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "eyeslam/trials/error_figures.h"
 #include "eyeslam/trials/svg_canvas.h"
@@ -15,7 +16,7 @@ namespace eyeslam::trials {
 namespace {
 
 constexpr double kWidth = 1080.0, kLeft = 62.0;  // px
-constexpr std::size_t kBins = 40;
+constexpr double kMostBins = 40.0;
 
 struct Latency {
   std::string name, unit;
@@ -34,17 +35,18 @@ std::vector<double> gathered(const std::vector<const TrialRecord*>& trials, cons
 void drawHistogram(const Latency& latency, const std::vector<double>& values, const Box& plot, SvgCanvas& canvas)
 {
   const ErrorFigures figures = errorFigures(values);
-  const double width = std::max(1.02 * figures.max, 1e-9) / static_cast<double>(kBins);
-  std::vector<double> counts(kBins, 0.0);
-  for (const double value : values)
-    counts[std::min(static_cast<std::size_t>(std::max(0.0, value) / width), kBins - 1)] += 1.0;
+  // Whole units, for values lie on a grid of their own that finer bins would count unevenly.
+  const double width = std::max(1.0, std::ceil(figures.max / kMostBins));
+  std::vector<double> counts(static_cast<std::size_t>(figures.max / width) + 1, 0.0);
+  for (const double value : values) counts[static_cast<std::size_t>(std::max(0.0, value) / width)] += 1.0;
   for (double& count : counts) count *= 100.0 / static_cast<double>(values.size());
-  SvgChart chart(canvas, plot, {fmt::format("{} ({})", latency.name, latency.unit), 0.0, width * kBins},
+  SvgChart chart(canvas, plot,
+                 {fmt::format("{} ({})", latency.name, latency.unit), 0.0, width * static_cast<double>(counts.size())},
                  Axis::fromZero("share (%)", *std::max_element(counts.begin(), counts.end())));
   chart.title(
       fmt::format("median {:.3g}, p95 {:.3g}, max {:.3g} {}", figures.median, figures.p95, figures.max, latency.unit));
   chart.axes();
-  for (std::size_t i = 0; i < kBins; ++i)
+  for (std::size_t i = 0; i < counts.size(); ++i)
     if (counts[i] > 0.0)
       chart.bar(width * (static_cast<double>(i) + 0.06), width * (static_cast<double>(i) + 0.94), counts[i],
                 Paint::area("#56b4e9"));
@@ -61,15 +63,18 @@ std::string latencyFigure(const std::vector<const TrialRecord*>& trials)
       {"exposure to the command that uses it", "ms", 1e3, &TrialRecord::frame_to_command_s},
       {"CPU time of the longest cycle", "\u00b5s", 1e6, &TrialRecord::computation_s}};
   SvgCanvas canvas(kWidth, 280.0, "latencies");
-  const double step = kWidth / static_cast<double>(latencies.size());
-  double at = 0.0;
+  std::vector<std::pair<Latency, std::vector<double>>> measured;
   for (const Latency& latency : latencies) {
-    const std::vector<double> values = gathered(trials, latency);
-    if (values.empty()) continue;
+    std::vector<double> values = gathered(trials, latency);
+    if (!values.empty()) measured.emplace_back(latency, std::move(values));
+  }
+  const double step = kWidth / static_cast<double>(std::max<std::size_t>(measured.size(), 1));
+  double at = 0.0;
+  for (const auto& [latency, values] : measured) {
     drawHistogram(latency, values, boxAt(at + kLeft, 30.0, step - kLeft - 20.0, 195.0), canvas);
     at += step;
   }
-  return at > 0.0 ? canvas.svg() : std::string();
+  return measured.empty() ? std::string() : canvas.svg();
 }
 
 }  // namespace eyeslam::trials

@@ -41,8 +41,12 @@ void addPictures(const std::vector<const TrialRecord*>& trials, const std::strin
   page.figure(
       errorOverTime(trials),
       fmt::format("Error of the tip over time, seed {}: from the least to the greatest of each column, and its RMS "
-                  "over 0.5 s (line). Dashed red: events that are warned of.",
-                  seed));
+                  "over 0.5 s (line). Dashed red: events that are warned of.{}",
+                  seed,
+                  trials.size() > 1
+                      ? " Eye and hand are the same with and without an aid, but an aided trial begins to "
+                        "count later, for it is calibrated first."
+                      : ""));
 }
 
 void addLatencies(const std::vector<const TrialRecord*>& trials, ReportPage& page)

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <sstream>
 #include <string>
@@ -36,10 +37,13 @@ std::vector<std::string> wordsIn(const std::string& text)
   return words;
 }
 
-// Patterns and places of a prescription are lists by themselves; a text alone may be empty.
+// Patterns and places of a prescription are lists by themselves; a text alone may be empty, a photograph's path may
+// have blanks.
 bool isSwept(const Assignment& assignment)
 {
-  return assignment.key.rfind("prescription.", 0) != 0 && wordsIn(assignment.text).size() > 1;
+  if (assignment.key.rfind("prescription.", 0) == 0) return false;
+  if (assignment.key == "retina" && std::filesystem::is_regular_file(assignment.text)) return false;
+  return wordsIn(assignment.text).size() > 1;
 }
 
 std::vector<Choice> choicesOf(const std::vector<Assignment>& assignments)
@@ -149,6 +153,8 @@ TrialSetting presetBy(const Scenario& scenario)
   setting.servo.image_height_px = eye.height;
   setting.servo.cycle.null_at = scenario.null_at;
   setting.servo.burning.standoff_um = scenario.standoff_um;
+  setting.servo.burning.interlocks.latency_ms = scenario.latency_ms;
+  setting.servo.burning.interlocks.frame_ms = std::ceil(1e4 / scenario.camera_hz) / 10.0;  // no shorter than it is
   simulation::SurgeonOptions& surgeon = setting.hardware.hand.surgeon;
   if (scenario.isLaser() && scenario.isManual()) surgeon.gain_hz = scenario.laser.manual_gain_hz;
   if (scenario.isLaser() && !scenario.isManual()) surgeon.dead_zone_um = scenario.laser.rest_um;

@@ -39,11 +39,11 @@ Box regionOf(const std::vector<const TrialRecord*>& trials)
   return {region.min() - margin, region.max() + margin};
 }
 
-// Where the tip is when half of the time is over: it need not come everywhere.
+// The middle of what is followed; of a place the tip when half of the time is over.
 Eigen::Vector2d placeOfCloseUp(const TrialRecord& trial)
 {
-  if (!trial.tip.empty()) return trial.tip[trial.tip.size() / 2].tip.head<2>();
-  return trial.path.empty() ? Eigen::Vector2d(0.0, 0.0) : trial.path[trial.path.size() / 2];
+  if (trial.path.size() > 1) return trial.path[trial.path.size() / 2];
+  return trial.tip.empty() ? Eigen::Vector2d(0.0, 0.0) : Eigen::Vector2d(trial.tip[trial.tip.size() / 2].tip.head<2>());
 }
 
 void drawTask(const TrialRecord& trial, const RetinaPanel& panel, SvgCanvas& canvas)

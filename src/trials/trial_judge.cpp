@@ -142,6 +142,10 @@ void TrialJudge::judgeTip(const truth_t& truth)
   const double t_s = time(truth.utime);
   if (last_tip_) travelled_.push_back((tip - *last_tip_).norm());
   last_tip_ = tip;
+  const Eigen::Vector3d null(truth.null);
+  if (last_null_) hand_travelled_ += (null - *last_null_).norm();
+  last_null_ = null;
+  hand_off_um_.push_back((tip - null).norm() / kMicro);
   ++truths_;
   saturated_ += truth.saturated;
   worst_pivot_ = std::max(worst_pivot_, truth.pivot_error);

@@ -99,6 +99,9 @@ class TrialJudge {
   std::optional<TipJudge> tip_judge_;
   std::vector<TipSample> tip_;
   std::vector<double> travelled_;
+  std::optional<Eigen::Vector3d> last_null_;
+  std::vector<double> hand_off_um_;  // the tip from where the hand alone would have it
+  double hand_travelled_ = 0.0;      // m
   std::int64_t saturated_ = 0, truths_ = 0;
   std::int64_t first_truth_ = 0;
   std::vector<simulation::RetinaPose> retina_;  // a millisecond each, from first_truth_ on

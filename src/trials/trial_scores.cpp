@@ -2,6 +2,7 @@
 // The second half of TrialJudge: what it has seen, as a record.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 
@@ -14,7 +15,8 @@ namespace eyeslam::trials {
 namespace {
 
 constexpr double kMicro = 1e-6;
-constexpr double kOnPath = 50e-6;  // m, that counts as having been there
+constexpr double kOnPath = 50e-6;   // m, that counts as having been there
+constexpr double kNotices_s = 0.5;  // after a fault that is short; the longest of the servo's patiences is 0.3 s
 constexpr double kDegree = 57.29577951308232;
 constexpr const char* kFates[] = {"pending", "done", "missed", "refused"};  // burn_target_t
 
@@ -43,6 +45,14 @@ std::vector<double> each(const Values& values, const Of& of)
   std::vector<double> result;
   std::transform(values.begin(), values.end(), std::back_inserter(result), of);
   return result;
+}
+
+void addLatency(const std::string& what, const std::vector<double>& seconds, TrialScore& score)
+{
+  if (seconds.empty()) return;
+  const ErrorFigures figures = errorFigures(seconds);
+  score.more.emplace_back(what + "_median_ms", 1e3 * figures.median);
+  score.more.emplace_back(what + "_p95_ms", 1e3 * figures.p95);
 }
 
 // Which part of the path the tip came near to.
@@ -95,6 +105,10 @@ TrialRecord TrialJudge::record() const
   score.tip_travel_mm = 1e3 * std::accumulate(travelled_.begin(), travelled_.end(), 0.0);
   if (!travelled_.empty())
     score.more.emplace_back("highest_tip_speed_mm_s", 1e6 * *std::max_element(travelled_.begin(), travelled_.end()));
+  score.more.emplace_back("hand_travel_mm", 1e3 * hand_travelled_);
+  score.more.emplace_back("tip_off_hand_rms_um", errorFigures(hand_off_um_).rms);
+  addLatency("pose_age", pose_ages_s_, score);
+  addLatency("frame_to_command", frame_to_command_s_, score);
   if (scenario.isLaser()) {
     addTargets(record);
     addPulses(record);
@@ -123,16 +137,21 @@ void TrialJudge::addTip(TrialRecord& record) const
   score.p95_um = figures.p95;
   score.max_um = figures.max;
   if (scene_->path().size() > 1) score.path_coverage = coverage(scene_->path(), tip_);
-  std::vector<double> calm, on_path;
+  std::vector<double> calm, on_path, calm_on_path;
   for (const TipSample& sample : record.tip) {
-    if (!sample.calm) continue;
-    calm.push_back(sample.error / kMicro);
-    if (sample.on_path) on_path.push_back(sample.error / kMicro);
+    const double error_um = sample.error / kMicro;
+    if (sample.calm) calm.push_back(error_um);
+    if (sample.on_path) on_path.push_back(error_um);
+    if (sample.calm && sample.on_path) calm_on_path.push_back(error_um);
   }
   score.more.emplace_back("calm_rms_um", errorFigures(calm).rms);
   score.more.emplace_back("calm_p99_um", errorFigures(calm).p99);
-  score.more.emplace_back("calm_on_path_rms_um", errorFigures(on_path).rms);
-  score.more.emplace_back("calm_on_path_p99_um", errorFigures(on_path).p99);
+  score.more.emplace_back("calm_on_path_rms_um", errorFigures(calm_on_path).rms);
+  score.more.emplace_back("calm_on_path_p99_um", errorFigures(calm_on_path).p99);
+  if (record.task != "trace") return;
+  score.more.emplace_back("beyond_path_share", 1.0 - share(on_path.size(), record.tip.size()));
+  score.more.emplace_back("on_path_rms_um", errorFigures(on_path).rms);
+  score.more.emplace_back("on_path_p95_um", errorFigures(on_path).p95);
 }
 
 void TrialJudge::addPoses(TrialRecord& record) const
@@ -183,6 +202,11 @@ void TrialJudge::addPulses(TrialRecord& record) const
   score.targets = static_cast<std::int64_t>(record.targets.size());
   score.refused = fated("refused");
   score.missed = fated("missed");
+  std::map<std::string, double> reasons;
+  for (const PlannedTarget& target : record.targets)
+    if (target.fate == "refused" || target.fate == "missed")
+      ++reasons[target.fate + (target.reason.empty() ? "" : "_" + target.reason)];
+  for (const auto& [reason, count] : reasons) score.more.emplace_back(reason, count);
   score.fired = static_cast<std::int64_t>(pulses_.size());
   score.interlock_violations = violations_;
   score.far_pulses = score.far_unexplained = 0;
@@ -223,7 +247,8 @@ void TrialJudge::addVerdict(TrialRecord& record) const
   }
   if (fault.kind == "none") return;
   const auto matches = [&fault](const TrialEvent& event) {
-    return event.what == fault.must && (fault.reason.empty() || event.reason == fault.reason);
+    const bool meanwhile = event.t_s >= fault.at_s && event.t_s <= fault.at_s + fault.for_s + kNotices_s;
+    return meanwhile && event.what == fault.must && (fault.reason.empty() || event.reason == fault.reason);
   };
   const bool stood = holds_ + faults_ > 0;
   record.passed = fault.must == "go_on" ? !stood : std::any_of(events_.begin(), events_.end(), matches);

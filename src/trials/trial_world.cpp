@@ -12,7 +12,7 @@ namespace eyeslam::trials {
 
 namespace {
 
-constexpr double kLatest_s = 40.0;     // what never began by then begins no more
+constexpr double kLatest_s = 40.0;     // what never began by then, settling and mapping apart, begins no more
 constexpr double kAfterwards_s = 0.3;  // that a log shows of what comes after the last burn
 
 }  // namespace
@@ -100,8 +100,9 @@ void TrialWorld::decide(const messaging::ReceiveTime& now)
 
 bool TrialWorld::isOver() const
 {
-  if (!counts_s_) return time() >= kLatest_s;
-  const double end = *counts_s_ + setting_.scenario.duration_s;
+  const Scenario& scenario = setting_.scenario;
+  if (!counts_s_) return time() >= kLatest_s + scenario.settling_s + (scenario.isLaser() ? scenario.laser.map_s : 0.0);
+  const double end = *counts_s_ + scenario.duration_s;
   return time() >= (done_s_ ? std::min(end, *done_s_ + kAfterwards_s) : end);
 }
 

@@ -194,14 +194,14 @@ double crowding(const Way& way, const fixtures::VesselNetwork& network, double a
   return static_cast<double>(crowded) / static_cast<double>(std::max<std::size_t>(looked, 1));
 }
 
-std::size_t clearestOf(const Way& way, const fixtures::VesselNetwork& network)
+// Where a part of a way is farthest from others; its middle where there are none.
+std::size_t clearestOf(const Way& path, const std::vector<Eigen::Vector2d>& others)
 {
-  const std::vector<Eigen::Vector2d> others = othersThan(way, network);
-  std::size_t clearest = way.size() / 2;
+  std::size_t clearest = path.size() / 2;
   double farthest_sq = 0.0;
-  for (std::size_t i = 0; i < way.size() && !others.empty(); ++i) {
+  for (std::size_t i = 0; i < path.size() && !others.empty(); ++i) {
     double nearest_sq = HUGE_VAL;
-    for (const Eigen::Vector2d& other : others) nearest_sq = std::min(nearest_sq, (other - way[i]).squaredNorm());
+    for (const Eigen::Vector2d& other : others) nearest_sq = std::min(nearest_sq, (other - path[i]).squaredNorm());
     if (nearest_sq <= farthest_sq) continue;
     farthest_sq = nearest_sq;
     clearest = i;
@@ -243,7 +243,7 @@ ChosenVessel vesselToTrace(const fixtures::VesselNetwork& network, const VesselW
   if (!best) return {};
   const Way& way = ways[best->way];
   const Way path = around(way, *best, 0), near = around(way, *best, kBeyonds * beyond);
-  return {path, around(way, *best, beyond), clearestOf(path, network), near[near.size() / 2]};
+  return {path, around(way, *best, beyond), clearestOf(path, othersThan(way, network)), near[near.size() / 2]};
 }
 
 }  // namespace eyeslam::trials

@@ -123,6 +123,25 @@ class OtherCalls(TrialCase):
         self.assertEqual(files(out), ["report.html", "results.csv", "vessel_tracing/seed_0007/report.html",
                                       "vessel_tracing/seed_0007/results.json"])
 
+    def test_an_independent_checker_finds_nothing_against_an_automated_laser(self):
+        out = self.folder / "out"
+        self.trial(SCENARIOS / "laser_rings.yaml", *settings(aid="automated", duration_s=3), "--quiet", "--out", out)
+        check = subprocess.run([sys.executable, ROOT / "scripts" / "check_trial_log.py", "--json", out / "checked.json",
+                                out / "laser_rings/seed_0000/trial.lcm"], capture_output=True, text=True, timeout=300)
+        self.assertEqual(check.returncode, 0, check.stdout + check.stderr)
+        found = json.loads((out / "checked.json").read_text())["summary"]
+        row, = rows(out)
+        self.assertGreater(found["pulses"], 3)
+        self.assertEqual((found["pulses"], found["far"]), (int(row["fired"]), int(row["far_pulses"])))
+
+    def test_each_shipped_failure_does_what_must_happen(self):
+        out = self.folder / "out"
+        failures = sorted(SCENARIOS.glob("fault_*.yaml"))
+        self.assertGreater(len(failures), 3)
+        self.trial(*failures, *small(), "--no-logs", "--quiet", "--out", out)  # status 0: no verdict failed
+        held = {row["scenario"]: int(row["hold_events"]) for row in rows(out)}
+        self.assertEqual(held, {path.stem: int("must: hold" in path.read_text()) for path in failures})
+
     def test_a_trial_that_cannot_run_is_one_line_and_the_others_go_on(self):
         lost = self.scenario("lost.yaml", "task: trace\naid: none\nretina: nothing.png\n")
         good = self.scenario("good.yaml", "task: trace\naid: none\nduration_s: 1\n")

@@ -92,6 +92,14 @@ TEST_F(ScenarioFile, DoesNotSweepThePrescriptionsOwnLists)
   EXPECT_EQ(read(text).front().setting.prescription.pattern.counts, "5 11");
 }
 
+TEST_F(ScenarioFile, DoesNotSweepTheWordsOfAPhotographsName)
+{
+  const std::string photograph = folder_.path("my photo.png");
+  EXPECT_EQ(read("retina: " + photograph + "\n").size(), 2U) << "no such file: words";
+  std::ofstream(photograph) << "a picture";
+  EXPECT_EQ(only("retina: " + photograph + "\n").scenario.retina, photograph);
+}
+
 TEST_F(ScenarioFile, ReadsAnEmptyFileAsTheDefaults)
 {
   EXPECT_EQ(configuration::hashOf(only("")), configuration::hashOf(presetBy(Scenario{})));
@@ -109,12 +117,17 @@ TEST_F(ScenarioFile, PresetsTheCameraByItsRate)
   EXPECT_EQ(fast.servo.image_height_px, 304.0);
   EXPECT_EQ(fast.vision.latency_high_ms, 5.0);
   EXPECT_EQ(fast.vision.latency_low_ms, 3.5);
+  // A pulse wants a pose that is not older than latency and one frame.
+  EXPECT_EQ(fast.servo.burning.interlocks.latency_ms, 5.0);
+  EXPECT_EQ(fast.servo.burning.interlocks.frame_ms, 8.4);
   const TrialSetting usual = only("camera_hz: 30\n");
   EXPECT_EQ(usual.hardware.camera.width, 800);
   EXPECT_EQ(usual.hardware.camera.height, 608);
   EXPECT_EQ(usual.hardware.camera.exposure_ms, 8.0);
   EXPECT_EQ(usual.vision.tracker.frame.scale, tracking::TrackerOptions{}.frame.scale);
   EXPECT_EQ(usual.vision.latency_high_ms, 20.0);
+  EXPECT_EQ(usual.servo.burning.interlocks.latency_ms, 20.0);
+  EXPECT_EQ(usual.servo.burning.interlocks.frame_ms, 33.4);
 }
 
 TEST_F(ScenarioFile, PresetsByItsWords)

@@ -170,6 +170,27 @@ TEST(TrialJudge, WantsTheTipOnThePathBesideItAndOnAnyVesselBeyondItsEnds)
   EXPECT_TRUE(judgedAt({end + 300e-6 * on, near, again}).on_path);
 }
 
+double more(const TrialRecord& record, const std::string& name)
+{
+  for (const auto& [key, value] : record.score.more)
+    if (key == name) return value;
+  ADD_FAILURE() << "no score " << name;
+  return -1.0;
+}
+
+TEST(Trial, TellsOfTheHandOfLatenciesAndOfTheTimeBesideThePath)
+{
+  const TrialRecord record = traced().judge.record();
+  EXPECT_GT(more(record, "hand_travel_mm"), 1.0);        // tremor of 50 um at 10 Hz for a second
+  EXPECT_GT(more(record, "tip_off_hand_rms_um"), 50.0);  // which the manipulator takes off
+  EXPECT_GT(more(record, "pose_age_median_ms"), 13.0);
+  EXPECT_LT(more(record, "pose_age_p95_ms"), 21.0);
+  EXPECT_GE(more(record, "frame_to_command_median_ms"), more(record, "pose_age_median_ms"));
+  const auto beyond =
+      std::count_if(record.tip.begin(), record.tip.end(), [](const TipSample& s) { return !s.on_path; });
+  EXPECT_EQ(more(record, "beyond_path_share"), static_cast<double>(beyond) / static_cast<double>(record.tip.size()));
+}
+
 TEST(Trial, ScoresTheAidedHandAgainstTheTruth)
 {
   const TrialRecord record = traced().judge.record();
@@ -241,8 +262,8 @@ TEST(Trial, LetsOutWhatItsListenerThrows)
 
 TEST(Trial, HoldsWithItsReasonWhenTheOperatorIsLostAndPassesWhereThatMustBe)
 {
-  const std::string lost = "aid: hard\nduration_s: 1.5\nfault: {kind: operator_lost, at_s: 0.5, for_s: 5, must: ";
-  ShortTrial trial(lost + "hold, reason: operator_stale}\n", 3, traced().scene);
+  const std::string lost = "aid: hard\nduration_s: 1.5\nfault: {kind: operator_lost, for_s: 5, ";
+  ShortTrial trial(lost + "at_s: 0.5, must: hold, reason: operator_stale}\n", 3, traced().scene);
   const TrialRecord record = trial.run().judge.record();
   EXPECT_TRUE(record.passed.value_or(false)) << record.verdict;
   EXPECT_EQ(record.score.hold_events, 1);
@@ -255,7 +276,8 @@ TEST(Trial, HoldsWithItsReasonWhenTheOperatorIsLostAndPassesWhereThatMustBe)
   EXPECT_FALSE(hold->warning) << "it was to be so";
 
   // The same log, by what a scenario wants that is not so.
-  for (const char* must : {"fault}\n", "hold, reason: pose_old}\n", "go_on}\n"}) {
+  for (const char* must : {"at_s: 0.5, must: fault}\n", "at_s: 0.5, must: hold, reason: pose_old}\n",
+                           "at_s: 0.5, must: go_on}\n", "at_s: 1.4, must: hold, reason: operator_stale}\n"}) {
     const ShortTrial wants(lost + must, 3, trial.scene);
     TrialJudge judge(trial.scene);
     for (const KeptEvent& kept : trial.events) {

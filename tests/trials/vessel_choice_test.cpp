@@ -132,6 +132,16 @@ TEST(VesselChoice, TellsWhereOnItOneIsFarFromOthers)
                     wish());
   ASSERT_FALSE(chosen.centreline.empty());
   EXPECT_NEAR(chosen.centreline[chosen.clear_at].x(), 100.0 + kBeyond, 1.0);
+  // Also where what is traced is a small part of its vessel, whose middle is elsewhere.
+  VesselWish at_the_end = wish();
+  at_the_end.area_px = Eigen::AlignedBox2d(Vector2d(600.0, 400.0), Vector2d(800.0, 600.0));
+  at_the_end.apart_px = 0.0;
+  const ChosenVessel part =
+      vesselToTrace(networkOf({wide(1, {{100, 500}, {900, 500}}),
+                               support::vesselThrough(2, {{600, 450}, {640, 450}}, {-1, -1}, 2.0)}),
+                    at_the_end);
+  ASSERT_FALSE(part.centreline.empty());
+  EXPECT_NEAR(part.centreline[part.clear_at].x(), 800.0, 2.0);
 }
 
 // At its end it divides: one of the two is as wide as it is, the other one straighter.
