@@ -11,22 +11,28 @@ import json
 import sys
 
 COLUMNS = ["log", "channel", "compared", "identical", "missing", "extra", "first_difference_utime", "max_difference",
-           "video_offset_s", "video_offset_certain", "warnings"]
+           "video_offset_s", "video_offset_certain", "warnings", "error"]
 
 
 def rows(path):
     with open(path) as file:
         replay = json.load(file)
+    log = path.removesuffix(".json")
     video = replay.get("video") or {}
-    for channel in replay["channels"]:
-        yield {"log": path.removesuffix(".json"), "channel": channel["name"],
+    error = replay.get("error") or ("interrupted" if replay.get("interrupted") else "")
+    if not error and not replay["channels"]:
+        error = "nothing was compared"
+    if error:
+        yield {"log": log, "error": error}
+    for channel in replay.get("channels", []):
+        yield {"log": log, "channel": channel["name"],
                **{name: channel[name] for name in COLUMNS[2:8]},
                "video_offset_s": video.get("offset_s"), "video_offset_certain": video.get("offset_certain"),
                "warnings": len(video.get("warnings", []))}
 
 
 def is_same(row):
-    return row["compared"] == row["identical"] and row["missing"] == 0 and row["extra"] == 0
+    return "error" not in row and row["compared"] == row["identical"] and row["missing"] == 0 and row["extra"] == 0
 
 
 def main(paths):
@@ -41,8 +47,11 @@ def main(paths):
             for row in rows(path):
                 table.writerow(row)
                 same = same and is_same(row)
-        except (OSError, ValueError, KeyError) as error:
+        except (OSError, ValueError) as error:
             print(f"replay_table.py: {path}: {error}", file=sys.stderr)
+            same = False
+        except (KeyError, AttributeError, TypeError):
+            print(f"replay_table.py: {path}: is not what eyeslam-replay LOG --json writes", file=sys.stderr)
             same = False
     return 0 if same else 1
 

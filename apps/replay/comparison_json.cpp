@@ -71,16 +71,23 @@ ordered_json videoJson(const replay::VideoReplay& video)
 }  // namespace
 
 std::string comparisonJson(const replay::Comparison& comparison, const replay::SortedLog& log,
-                           const replay::VideoReplay* video)
+                           const replay::VideoReplay* video, bool interrupted)
 {
   ordered_json object = {{"version", kVersion},
                          {"events", log.reader().events()},
                          {"skipped", log.reader().damage().skipped_bytes},
+                         {"interrupted", interrupted},
                          {"video", video == nullptr ? ordered_json() : videoJson(*video)},
                          {"channels", ordered_json::array()}};
   for (const replay::ChannelComparison& channel : comparison.channels())
     object["channels"].push_back(channelJson(channel));
   // Texts may hold any bytes.
+  return object.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string failureJson(const std::string& what)
+{
+  const ordered_json object = {{"version", kVersion}, {"error", what}};
   return object.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -20,6 +20,8 @@ std::string differenceText(const replay::Comparison& comparison, std::int64_t st
 /// For programs (contracts, section 7), with the first differences and the fields besides.
 /// @param video  that the tracker was computed from, or null
 std::string comparisonJson(const replay::Comparison& comparison, const replay::SortedLog& log,
-                           const replay::VideoReplay* video);
+                           const replay::VideoReplay* video, bool interrupted);
+/// The same of a log that could not be computed again.
+std::string failureJson(const std::string& what);
 
 }  // namespace eyeslam::apps

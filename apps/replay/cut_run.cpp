@@ -3,29 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
-#include "command_line/program.h"
 #include "eyeslam/files/file_error.h"
 #include "eyeslam/files/log_writer.h"
 #include "replay/log_pass.h"
 
 namespace eyeslam::apps {
-namespace {
-
-void checkNotItself(const ReplayArguments& arguments)
-{
-  std::error_code ignored;  // what does not exist is nothing's equal
-  if (std::filesystem::equivalent(arguments.log, arguments.out, ignored)) {
-    throw UsageError(fmt::format("--out {}: is the log itself; another name is wanted", arguments.out));
-  }
-}
-
-}  // namespace
-
 void cutLog(const ReplayArguments& arguments)
 {
-  checkNotItself(arguments);
   replay::LogSelection selection = selectionOf(arguments);
   LogPass pass(arguments, "cutting");
   files::LogWriter part(arguments.out);
@@ -34,6 +18,7 @@ void cutLog(const ReplayArguments& arguments)
     if (selection.takes(*event)) part.append(e.channel, e.data, e.size, e.utime);
   }
   pass.requireEvents();
+  pass.tellDamage();
   if (part.events() == 0)
     throw files::FileError(fmt::format("{}: no event in this part; nothing written", arguments.log));
   part.finish();

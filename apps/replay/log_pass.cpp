@@ -3,10 +3,30 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <utility>
+
+#include "command_line/program.h"
 #include "eyeslam/files/file_error.h"
+#include "replay/side_video_text.h"
 
 namespace eyeslam::apps {
 namespace {
+
+// What is read must not be replaced by what is written.
+void requireOthers(const ReplayArguments& arguments)
+{
+  const std::pair<const char*, std::string> outputs[] = {{"--out", arguments.out}, {"--json", arguments.json}};
+  const std::pair<const char*, std::string> inputs[] = {
+      {"log", arguments.log}, {"video", arguments.video.empty() ? videoBeside(arguments) : arguments.video}};
+  for (const auto& [option, output] : outputs) {
+    for (const auto& [what, input] : inputs) {
+      std::error_code ignored;  // what does not exist is nothing's equal
+      if (output.empty() || !std::filesystem::equivalent(input, output, ignored)) continue;
+      throw UsageError(fmt::format("{} {}: is the {} itself; another name is wanted", option, output, what));
+    }
+  }
+}
 
 std::int64_t megabytes(std::int64_t bytes) { return (bytes + 999'999) / 1'000'000; }
 
@@ -16,7 +36,9 @@ LogPass::LogPass(const ReplayArguments& arguments, const std::string& doing)
     : path_(arguments.log),
       log_(arguments.log),
       progress_(doing + ", MB", megabytes(log_.reader().size()), arguments.verbosity())
-{}
+{
+  requireOthers(arguments);
+}
 
 std::optional<replay::SortedEvent> LogPass::next()
 {
@@ -27,6 +49,14 @@ std::optional<replay::SortedEvent> LogPass::next()
   if (interrupted_) return std::nullopt;
   ++events_;
   return log_.next();
+}
+
+void LogPass::tellDamage() const
+{
+  const files::LogDamage& damage = log_.reader().damage();
+  if (damage.gaps == 0 && !damage.cut_off) return;
+  fmt::print(stderr, "eyeslam-replay: {}: {} bytes of it are no events and were skipped, at {} places; see `info`\n",
+             path_, damage.skipped_bytes, damage.gaps);
 }
 
 void LogPass::showProgress() { progress_.show(megabytes(log_.reader().position())); }

@@ -13,7 +13,8 @@ namespace eyeslam::apps {
 /// One pass over a log from its beginning, with progress; Ctrl-C ends it between two events.
 class LogPass {
  public:
-  /// @param doing  for the progress bar. @throws files::FileError
+  /// @param doing  for the progress bar
+  /// @throws files::FileError; UsageError: what is to be written is what is read
   LogPass(const ReplayArguments& arguments, const std::string& doing);
 
   /// The next event; none at the end or when it was interrupted.
@@ -28,6 +29,8 @@ class LogPass {
 
   /// @throws files::FileError when no event was found: it is no log
   void requireEvents() const;
+  /// One line to stderr where anything of the log was skipped.
+  void tellDamage() const;
 
  private:
   static constexpr std::int64_t kTurn = 256;  // events between looks at signals and clocks

@@ -23,23 +23,28 @@ void sleepUntil(double monotonic)
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
 }
 
-// Keeps a log's times on the monotonic clock: lateness of one event delays no other.
+// Keeps a log's times on the monotonic clock: lateness of one event delays no other. Where one log was joined to a
+// later one, time begins anew.
 class LogClock {
  public:
   explicit LogClock(double speed) : speed_(speed) {}
 
   double due(std::int64_t since_us)
   {
-    if (!first_us_) {
-      first_us_ = since_us;
+    if (!first_us_ || since_us < newest_us_ - kStep_us) {
+      first_us_ = newest_us_ = since_us;
       start_ = monotonicSeconds();
     }
+    newest_us_ = std::max(newest_us_, since_us);
     return start_ + 1e-6 * static_cast<double>(since_us - *first_us_) / speed_;
   }
 
  private:
+  static constexpr std::int64_t kStep_us = 10'000'000;  // farther back than any event that is late
+
   double speed_;
   std::optional<std::int64_t> first_us_;
+  std::int64_t newest_us_ = 0;
   double start_ = 0.0;
 };
 
@@ -62,6 +67,7 @@ class Playback {
       if (selection_.takes(*event) && waitFor(*event)) send(*event);
     }
     pass_.requireEvents();
+    pass_.tellDamage();
     report();
   }
 
@@ -104,6 +110,8 @@ class Playback {
       fmt::print("{}: {} events at {:g} times real time, at most {:.1f} ms late (at {:.3f} s)\n", link_.url(), sent_,
                  arguments_.speed, 1e3 * latest_, 1e-6 * static_cast<double>(latest_at_us_));
     }
+    if (sent_ + refused_ == 0 && !pass_.interrupted())
+      throw std::runtime_error(fmt::format("{}: no event in this part; nothing played", arguments_.log));
     if (refused_ > 0) {
       throw std::runtime_error(fmt::format("{}: LCM refused {} of {} events", link_.url(), refused_, refused_ + sent_));
     }

@@ -5,17 +5,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "command_line/program.h"
+#include "eyeslam/configuration/field.h"
 #include "eyeslam/files/file_error.h"
 #include "eyeslam/files/partial_file.h"
 #include "eyeslam/files/whole_file.h"
 #include "eyeslam/replay/servo_replay.h"
 #include "eyeslam/replay/video_replay.h"
+#include "eyeslam/servo/servo_configuration.h"
+#include "eyeslam/tracking/tracker_options.h"
 #include "replay/comparison_text.h"
 #include "replay/log_pass.h"
 #include "replay/side_video_text.h"
@@ -27,27 +33,70 @@ using replay::RecomputedPart;
 
 constexpr std::int64_t kBeyond_us = 1'000'000;  // read behind the part, so that all of it is computed
 
-// What changes nothing of what vision says lets the servo hear what was recorded: the comparison is of the servo alone.
-bool changesTracker(const std::vector<configuration::Assignment>& changes)
+using Changes = std::vector<configuration::Assignment>;
+
+bool isOfTrialsTracker(const configuration::Assignment& one) { return one.key.rfind("vision.", 0) == 0; }
+
+bool isOfTrialsServo(const configuration::Assignment& one)
 {
-  return std::any_of(changes.begin(), changes.end(),
-                     [](const configuration::Assignment& one) { return one.key.rfind("vision.", 0) == 0; });
+  constexpr const char* kGroups[] = {"servo.", "preparation.", "calibration."};
+  return std::any_of(std::begin(kGroups), std::end(kGroups),
+                     [&one](const char* group) { return one.key.rfind(group, 0) == 0; });
+}
+
+// What changes nothing of what vision says lets the servo hear what was recorded: the comparison is of the servo alone.
+bool changesTracker(const Changes& changes) { return std::any_of(changes.begin(), changes.end(), isOfTrialsTracker); }
+
+// A question that nothing here can answer must not be answered with "no difference".
+void requirePartFor(const Changes& changes, bool tracker, bool servo)
+{
+  for (const configuration::Assignment& one : changes) {
+    if (!tracker && isOfTrialsTracker(one))
+      throw UsageError(one.key + ": the tracker is not computed again; its video is needed, and --only servo is not");
+    if (!servo && isOfTrialsServo(one))
+      throw UsageError(one.key + ": the servo is not computed again; leave out --only");
+  }
+}
+
+template <class Options>
+bool knows(Options defaults, const configuration::Assignment& one)
+{
+  const std::vector<configuration::Field> fields = configuration::fieldsOf(defaults);
+  return std::any_of(fields.begin(), fields.end(), [&one](const auto& field) { return field.key == one.key; });
+}
+
+// Of live programs each has its own keys: those that the other one alone knows are not for this one.
+template <class Own, class Other>
+Changes without(Changes changes, const Own& own, const Other& other)
+{
+  const auto is_others = [&](const configuration::Assignment& one) { return knows(other, one) && !knows(own, one); };
+  changes.erase(std::remove_if(changes.begin(), changes.end(), is_others), changes.end());
+  return changes;
 }
 
 class RecomputeRun {
  public:
   explicit RecomputeRun(const ReplayArguments& arguments) : arguments_(arguments), pass_(arguments, "computing again")
   {
-    selectionOf(arguments);  // refuses what is no interval
-    const std::vector<configuration::Assignment> changes = changesOf(arguments);
-    if (arguments.only != "tracker") servo_ = std::make_unique<replay::ServoReplay>(changes, comparison_);
+    selectionOf(arguments);                                                // refuses what is no interval
+    if (!arguments.json.empty()) std::filesystem::remove(arguments.json);  // of another run, it would be taken for this
+    const Changes changes = changesOf(arguments);
     const std::string video = videoOf(arguments);
+    const bool both = arguments.only.empty() && !video.empty();
+    requirePartFor(changes, !video.empty(), arguments.only != "tracker");
+    const tracking::TrackerOptions of_tracker;
+    const servo::ServoConfiguration of_servo;
+    if (arguments.only != "tracker") {
+      servo_ =
+          std::make_unique<replay::ServoReplay>(both ? without(changes, of_servo, of_tracker) : changes, comparison_);
+    }
     if (video.empty()) return;
     replay::TrackerReplay::Each each;
     servo_hears_tracker_ = servo_ && changesTracker(changes);
     if (servo_hears_tracker_) each = [this](const replay::SortedEvent& event) { servo_->take(event); };
-    tracker_ = std::make_unique<replay::VideoReplay>(replay::VideoReplayOptions{video, arguments.offset, changes},
-                                                     comparison_, each);
+    tracker_ = std::make_unique<replay::VideoReplay>(
+        replay::VideoReplayOptions{video, arguments.offset, both ? without(changes, of_tracker, of_servo) : changes},
+        comparison_, each);
   }
 
   void run()
@@ -58,13 +107,18 @@ class RecomputeRun {
       if (servo_ && !servo_hears_tracker_) servo_->take(*event);
     }
     pass_.requireEvents();
+    pass_.tellDamage();
     for (RecomputedPart* part : parts()) part->finish();
     requireAny();
     tell();
+    if (pass_.interrupted())
+      throw std::runtime_error(fmt::format("{}: interrupted; only its beginning was computed", arguments_.log));
+    requireCompared();
     if (!comparison_.isIdentical()) {
       throw std::runtime_error(fmt::format("{}: {}", arguments_.log, differenceText(comparison_, pass_.log().start())));
     }
   } catch (const replay::ReplayError& error) {
+    writeJson(failureJson(error.what()));
     throw files::FileError(fmt::format("{}: {}", arguments_.log, error.what()));
   }
 
@@ -98,14 +152,27 @@ class RecomputeRun {
     if (!std::any_of(all.begin(), all.end(), is_there)) throw replay::ReplayError(all.back()->lacking());
   }
 
+  void requireCompared() const
+  {
+    const auto is_empty = [](const replay::ChannelComparison& channel) {
+      return channel.compared + channel.missing + channel.extra == 0;
+    };
+    const auto& channels = comparison_.channels();
+    if (std::all_of(channels.begin(), channels.end(), is_empty))
+      throw std::runtime_error(fmt::format("{}: no message in this part; nothing was compared", arguments_.log));
+  }
+
+  void writeJson(const std::string& text) const
+  {
+    if (arguments_.json.empty()) return;
+    files::PartialFile file(arguments_.json);
+    files::writeWholeFile(file.partialPath(), text);
+    file.publish();
+  }
+
   void tell() const
   {
-    if (!arguments_.json.empty()) {
-      files::PartialFile file(arguments_.json);
-      files::writeWholeFile(file.partialPath(), comparisonJson(comparison_, pass_.log(), tracker_.get()));
-      file.publish();
-    }
-    if (pass_.interrupted()) fmt::print(stderr, "eyeslam-replay: interrupted; this is only the beginning of the log\n");
+    writeJson(comparisonJson(comparison_, pass_.log(), tracker_.get(), pass_.interrupted()));
     if (arguments_.quiet) return;
     for (const RecomputedPart* part : parts()) {
       fmt::print("{}\n", part->lacking().empty() ? part->about() : "not computed: " + part->lacking());

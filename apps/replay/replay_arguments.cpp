@@ -16,7 +16,7 @@ const char* const kExamples =
     "  eyeslam-replay info trial.lcm\n"
     "  eyeslam-replay trial.lcm\n"
     "  eyeslam-replay trial.lcm --only tracker --video video.mkv\n"
-    "  eyeslam-replay trial.lcm --set servo.cycle.tip_gain_hz=20 --json difference.json\n"
+    "  eyeslam-replay trial.lcm --set servo.cycle.predicts_null=false --json difference.json\n"
     "  eyeslam-replay overlay trial.lcm --out overlay.mp4\n"
     "  eyeslam-replay report trial.lcm --out report\n"
     "  eyeslam-replay trial.lcm --csv tables\n"

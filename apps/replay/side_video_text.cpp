@@ -10,24 +10,24 @@
 namespace eyeslam::apps {
 namespace {
 
-std::string placeBeside(const ReplayArguments& arguments)
-{
-  return (std::filesystem::path(arguments.log).parent_path() / "video.mkv").string();
-}
-
 std::string namedOrBeside(const ReplayArguments& arguments)
 {
   if (!arguments.video.empty()) return arguments.video;
   std::error_code none;
-  return std::filesystem::is_regular_file(placeBeside(arguments), none) ? placeBeside(arguments) : "";
+  return std::filesystem::is_regular_file(videoBeside(arguments), none) ? videoBeside(arguments) : "";
 }
 
 [[noreturn]] void refuse(const ReplayArguments& arguments, const char* what)
 {
-  throw UsageError(fmt::format("{}: there is no {}; --video FILE is wanted", what, placeBeside(arguments)));
+  throw UsageError(fmt::format("{}: there is no {}; --video FILE is wanted", what, videoBeside(arguments)));
 }
 
 }  // namespace
+
+std::string videoBeside(const ReplayArguments& arguments)
+{
+  return (std::filesystem::path(arguments.log).parent_path() / "video.mkv").string();
+}
 
 std::string videoOf(const ReplayArguments& arguments)
 {

@@ -8,6 +8,9 @@
 
 namespace eyeslam::apps {
 
+/// Where a log's video is, whether there is one or not.
+std::string videoBeside(const ReplayArguments& arguments);
+
 /// The video that belongs to a log: the one that was named, else `video.mkv` in the log's folder; empty where there is
 /// none, or nobody asks for the tracker.
 /// @throws UsageError  --only tracker or --offset without a video

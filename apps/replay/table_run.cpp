@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 
+#include "eyeslam/files/file_error.h"
 #include "eyeslam/files/output_folder.h"
 #include "eyeslam/replay/log_survey.h"
 #include "eyeslam/replay/message_tables.h"
@@ -49,6 +50,9 @@ void writeTables(const ReplayArguments& arguments)
     if (selection.takes(*event)) tables.add(*event);
   }
   pass.requireEvents();
+  pass.tellDamage();
+  if (tables.counts().empty())
+    throw files::FileError(fmt::format("{}: no event in this part; nothing written", arguments.log));
   tables.finish();
   folder.publish();
   if (!arguments.quiet) fmt::print("{}\n", arguments.csv);

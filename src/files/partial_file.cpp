@@ -22,6 +22,8 @@ PartialFile::PartialFile(const std::string& path) : path_(path)
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
     throw FileError(fmt::format("{}: the folder {} cannot be written", path, folder.string()));
   }
+  if (fs::exists(place, error) && !fs::is_regular_file(place, error))
+    throw FileError(fmt::format("{}: is no ordinary file, and would be replaced; name a file", path));
   partial_ =
       (folder / fmt::format(".{}.partial-{}{}", place.stem().string(), getpid(), place.extension().string())).string();
 }

@@ -44,7 +44,7 @@ void LogSurveyor::timeOf(const SortedEvent& event)
 ChannelSurvey* LogSurveyor::channelOf(std::string_view name)
 {
   if (const auto found = channels_.find(name); found != channels_.end()) return &found->second;
-  if (channels_.size() >= kMostChannels) return nullptr;
+  if (channels_.size() >= kMostChannels && !typeOfChannel(name)) return nullptr;
   return &channels_.emplace(std::string(name), ChannelSurvey(std::string(name))).first->second;
 }
 

@@ -83,7 +83,7 @@ std::vector<std::string> MessageTables::usualFiles()
 MessageTables::Channel& MessageTables::channelOf(std::string_view name)
 {
   if (const auto found = channels_.find(name); found != channels_.end()) return found->second;
-  const std::string own(channels_.size() < kMostChannels ? name : kOthers);
+  const std::string own(channels_.size() < kMostChannels || typeOfChannel(name) ? name : kOthers);
   Channel& channel = channels_[own];
   channel.counts.channel = own;
   return channel;

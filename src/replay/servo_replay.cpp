@@ -7,15 +7,16 @@
 
 #include "eyeslam/messaging/decoding.h"
 #include "eyeslam/messaging/record_messages.h"
-#include "eyeslam/replay/log_survey.h"
 #include "eyeslam/replay/message_types.h"
 #include "eyeslam/replay/recorded_configuration.h"
 #include "eyeslam/replay/recorded_trial.h"
+#include "eyeslam/replay/todays_type.h"
 
 namespace eyeslam::replay {
 namespace {
 
 constexpr const char* kServo = "eyeslam-servo";
+constexpr std::int64_t kSame_us = 1'000'000;  // as events are sorted
 constexpr const char* kCompared[] = {"MICRON_COMMAND", "LASER_COMMAND", "SERVO_STATUS", "REGISTRATION"};
 
 bool isMark(std::string_view channel) { return channel == "MARK"; }
@@ -38,12 +39,7 @@ void ServoReplay::take(const SortedEvent& sorted)
   const bool concerns = isMark(event.channel) || RecomputedServo::hears(event.channel) ||
                         event.channel == "SERVO_STATUS" || event.channel == "REGISTRATION";
   if (!concerns) return;
-  const JudgedEvent judged = judge(event);
-  if (judged.standing == Standing::changed_type) {
-    throw ReplayError(fmt::format("{} is not today's {}; {}", judged.type->channel, judged.type->name,
-                                  migrationOf(judged.type->name)));
-  }
-  if (judged.standing != Standing::ours) return;
+  if (judgeToday(event).standing != Standing::ours) return;
   if (stopped_ && event.utime > *stopped_) end();
   if (timeline_) timeline_->take(event);
   mark_t mark{};
@@ -56,16 +52,19 @@ void ServoReplay::take(const mark_t& mark, std::int64_t utime)
   if (of_it && mark.kind == mark_t::STOP) stopped_ = utime;
   if (mark.kind != mark_t::START || timeline_) return;
   if (mark.sender == kServo) {
-    beginLive(mark);
+    beginLive(mark, utime);
   } else if (mark.sender == "eyeslam-trial") {
-    beginTrial(mark);
+    beginTrial(mark, utime);
   }
 }
 
-void ServoReplay::beginTrial(const mark_t& mark)
+void ServoReplay::beginTrial(const mark_t& mark, std::int64_t utime)
 {
   const std::optional<RecordedTrial> trial = recordedTrial(mark, changes_);
   if (!trial) return;
+  // Either may be any number in a damaged log.
+  if (mark.utime < utime - kSame_us || mark.utime > utime + kSame_us)
+    throw ReplayError("MARK START is of another time than it was logged at, so that nothing says when cycles were");
   start_ = mark;
   bare_hand_ = trial->setting.scenario.isManual();
   if (bare_hand_) return;
@@ -75,11 +74,12 @@ void ServoReplay::beginTrial(const mark_t& mark)
   for (const char* channel : kCompared) comparison_.expect(channel);
 }
 
-void ServoReplay::beginLive(const mark_t& mark)
+// From when it was logged on: its sender may be of a computer with another clock.
+void ServoReplay::beginLive(const mark_t& mark, std::int64_t utime)
 {
   timeline_ =
       std::make_unique<LiveTimeline>(configuration::applied(recordedConfiguration(mark, liveConfiguration), changes_),
-                                     mark.session, mark.utime, comparison_, goals_);
+                                     mark.session, utime, comparison_, goals_);
   start_ = mark;
   live_ = true;
   about_ = fmt::format("servo of {} {}, which ran in real time", mark.sender, mark.version);

@@ -38,8 +38,8 @@ class ServoReplay final : public RecomputedPart {
 
  private:
   void take(const mark_t& mark, std::int64_t utime);
-  void beginTrial(const mark_t& mark);
-  void beginLive(const mark_t& mark);
+  void beginTrial(const mark_t& mark, std::int64_t utime);
+  void beginLive(const mark_t& mark, std::int64_t utime);
   void end();
 
   std::vector<configuration::Assignment> changes_;

@@ -9,7 +9,7 @@
 
 #include "eyeslam/messaging/decoding.h"
 #include "eyeslam/messaging/retina_messages.h"
-#include "eyeslam/replay/message_types.h"
+#include "eyeslam/replay/todays_type.h"
 #include "eyeslam/vision/frame_rate.h"
 
 namespace eyeslam::replay {
@@ -82,7 +82,7 @@ void TrackerReplay::take(const SortedEvent& event)
   const bool vision = isVision(event.event.channel), scale = event.event.channel == kScale;
   if (vision || scale || each_) {
     Held held(event);
-    if ((vision || scale) && judge(event.event).standing == Standing::ours) {
+    if ((vision || scale) && judgeToday(event.event).standing == Standing::ours) {
       held.header = headerOf(event.event);
       if (vision && session_ == 0 && held.message.channel == kPose) begin(held.header.session);
       held.vision = vision && held.header.session == session_;

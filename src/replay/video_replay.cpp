@@ -10,6 +10,7 @@
 #include "eyeslam/messaging/record_messages.h"
 #include "eyeslam/replay/recorded_configuration.h"
 #include "eyeslam/replay/recorded_trial.h"
+#include "eyeslam/replay/todays_type.h"
 
 namespace eyeslam::replay {
 namespace {
@@ -72,6 +73,7 @@ void VideoReplay::take(const SortedEvent& event)
 void VideoReplay::takeMark(const SortedEvent& event)
 {
   mark_t mark{};
+  judgeToday(event.event);
   if (replay_ || !messaging::decode(event.event.data, event.event.size, mark) || mark.kind != mark_t::START) return;
   if (mark.sender == kTracker) {
     begin(configuration::applied(recordedConfiguration(mark, liveConfiguration), options_.changes),
