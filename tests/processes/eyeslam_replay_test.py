@@ -7,8 +7,10 @@ import os
 import resource
 import shutil
 import signal
+import stat
 import struct
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -19,6 +21,7 @@ from live_case import FOLDER, LiveCase
 SECONDS = 3
 HEADER = struct.Struct(">qqqqq")  # of a message of ours: fingerprint, utime, utime_sent, seq, session
 SCENARIOS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scenarios")
+TABLE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts/replay_table.py")
 _live = []
 _trials = []
 
@@ -270,6 +273,66 @@ class ComputedAgain(ReplayCase):
         _, _, channels = self.compared(self.path("changed.lcm"), "--from", str(at + 0.001))
         self.assertGreater(channels["MICRON_COMMAND"]["compared"], 1000)
         self.assert_refused(self.call("eyeslam-replay", self.path("changed.lcm"), "--to", str(at + 0.001)), 1, "1 of")
+
+    def rewritten(self, name, change):
+        """The log with each event as change(utime, channel, data) returns it."""
+        lcm_log.write(self.path(name), (change(*event) for event in lcm_log.read(self.log())))
+        return self.path(name)
+
+    def test_nothing_that_is_read_and_no_device_is_replaced(self):
+        shutil.copy(self.log(), self.path("own.lcm"))
+        os.mkfifo(self.path("pipe"))
+        for arguments in (("own.lcm", "--json", "own.lcm"), ("info", "own.lcm", "--json", "own.lcm"),
+                          ("cut", "own.lcm", "--out", "own.lcm")):
+            arguments = [self.path(word) if word == "own.lcm" else word for word in arguments]
+            self.assert_refused(self.call("eyeslam-replay", *arguments), 2, "own.lcm", "itself")
+        self.assert_refused(self.call("eyeslam-replay", "cut", self.path("own.lcm"), "--out", self.path("pipe")), 1, "no ordinary file")
+        self.assertTrue(stat.S_ISFIFO(os.stat(self.path("pipe")).st_mode))
+        with open(self.log(), "rb") as was, open(self.path("own.lcm"), "rb") as now:
+            self.assertEqual(was.read(), now.read())
+
+    def test_a_start_at_an_impossible_time_is_refused_at_once_and_leaves_its_reason(self):
+        for bit in (22, 55, 63):
+            def change(utime, channel, data):
+                if channel != "MARK":
+                    return utime, channel, data
+                time_of_it = int.from_bytes(data[8:16], "big") ^ 1 << bit
+                return utime, channel, data[:8] + time_of_it.to_bytes(8, "big") + data[16:]
+            log = self.rewritten("broken.lcm", change)
+            self.assert_refused(self.call("eyeslam-replay", log, "--json", self.path("broken.json")), 1, "broken.lcm", "another time")
+            table = subprocess.run([sys.executable, TABLE, self.path("broken.json")], capture_output=True, text=True)
+            self.assertEqual(table.returncode, 1, table.stdout)
+            self.assertIn("another time", table.stdout)
+
+    def test_to_compare_nothing_is_no_success(self):
+        for arguments in ((), ("--csv", self.path("tables")), ("--lcm", "memq://", "--quiet")):
+            self.assert_refused(self.call("eyeslam-replay", self.log(), "--from", "1000", *arguments), 1, "in this part")
+        self.assertFalse(os.path.exists(self.path("tables")))
+        with open(self.path("empty.json"), "w") as file:
+            json.dump({"channels": []}, file)
+        self.assertEqual(subprocess.run([sys.executable, TABLE, self.path("empty.json")], capture_output=True).returncode, 1)
+
+    def test_a_what_if_of_a_part_that_is_not_computed_is_refused(self):
+        for only in ((), ("--only", "servo")):
+            refused = self.call("eyeslam-replay", self.log(), *only, "--set", "vision.tracker.frame.scale=0.3")
+            self.assert_refused(refused, 2, "vision.tracker.frame.scale", "not computed again")
+
+    def test_a_message_of_another_version_ends_what_needs_it(self):
+        changed = lambda name: lambda utime, channel, data: (utime, channel, (bytes(8) if channel == name else data[:8]) + data[8:])
+        for name, command in (("TRUTH", "report"), ("MARK", "report"), ("MARK", None), ("OPERATOR", None)):
+            log = self.rewritten("changed.lcm", changed(name))
+            call = ("report", log, "--out", self.path("report")) if command else (log,)
+            self.assert_refused(self.call("eyeslam-replay", *call), 1, f"{name} is not today's", "no migration")
+        self.replay(self.rewritten("changed.lcm", changed("TRUTH")))  # which no servo hears
+
+    def test_damage_is_told_by_every_command(self):
+        with open(self.log(), "rb") as file:
+            data = file.read()
+        with open(self.path("hole.lcm"), "wb") as file:
+            file.write(data[:1_000_000] + data[1_003_000:])
+        done = self.replay("cut", self.path("hole.lcm"), "--out", self.path("cut.lcm"))
+        self.assertRegex(done.stderr, r"hole\.lcm: \d+ bytes of it are no events")
+        self.assertEqual(self.replay("cut", self.path("cut.lcm"), "--out", self.path("again.lcm")).stderr, "")
 
     def test_a_what_if_says_how_far_its_goals_are_off(self):
         with open(self.path("other.yaml"), "w") as file:
