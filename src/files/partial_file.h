@@ -8,7 +8,8 @@ namespace eyeslam::files {
 /// A file written beside its place and renamed into it, so that nobody ever meets half of it.
 class PartialFile {
  public:
-  /// @throws FileError when the folder does not exist or cannot be written, or something else than a file is in its place
+  /// @throws FileError when the folder does not exist or cannot be written, or something else than a file is in its
+  /// place
   explicit PartialFile(const std::string& path);
   /// Removes what was written unless it was published.
   ~PartialFile();
