@@ -23,7 +23,7 @@ FAST = ("camera_hz=120", "latency_ms=5")  # 120/5
 STUDIES = {
     "tracing": ("vessel_tracing", ("aid=none hard",)),
     "tracing_soft": ("vessel_tracing", ("aid=soft",)),
-    "laser": ("laser_rings", ("motion=in_situ jerky",)),
+    "laser": ("laser_rings", ("aid=manual automated", "motion=in_situ jerky")),
     "tracing_eye": ("vessel_tracing", ("aid=none hard", "motion=jerky saccade")),
     "tracing_120": ("vessel_tracing", ("aid=hard", "motion=in_situ jerky", *FAST)),  # a bare hand knows no camera
     "laser_120": ("laser_rings", ("aid=automated", *FAST)),
@@ -60,8 +60,6 @@ def is_measured(name, seeds):
     if not table.exists() or table.stat().st_mtime < newest:
         return False
     variants = math.prod(len(setting.split("=", 1)[1].split()) for setting in settings)
-    if not any(setting.startswith("aid=") for setting in settings):
-        variants *= 2  # manual and automated, as the laser's scenario says
     with open(table, newline="") as file:
         rows = list(csv.DictReader(file))
     return len(rows) == seeds * variants and {int(row["seed"]) for row in rows} == set(range(seeds))

@@ -10,6 +10,12 @@ namespace {
 
 using nlohmann::ordered_json;
 
+// Texts may hold any bytes.
+std::string textOf(const ordered_json& object)
+{
+  return object.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
 // JSON has no infinity.
 ordered_json numberJson(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json("infinite"); }
 
@@ -81,14 +87,9 @@ std::string comparisonJson(const replay::Comparison& comparison, const replay::S
                          {"channels", ordered_json::array()}};
   for (const replay::ChannelComparison& channel : comparison.channels())
     object["channels"].push_back(channelJson(channel));
-  // Texts may hold any bytes.
-  return object.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return textOf(object);
 }
 
-std::string failureJson(const std::string& what)
-{
-  const ordered_json object = {{"version", kVersion}, {"error", what}};
-  return object.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
-}
+std::string failureJson(const std::string& what) { return textOf({{"version", kVersion}, {"error", what}}); }
 
 }  // namespace eyeslam::apps

@@ -8,6 +8,7 @@
 #include "replay/log_pass.h"
 
 namespace eyeslam::apps {
+
 void cutLog(const ReplayArguments& arguments)
 {
   replay::LogSelection selection = selectionOf(arguments);
@@ -17,8 +18,7 @@ void cutLog(const ReplayArguments& arguments)
     const files::LogEvent& e = event->event;
     if (selection.takes(*event)) part.append(e.channel, e.data, e.size, e.utime);
   }
-  pass.requireEvents();
-  pass.tellDamage();
+  pass.end();
   if (part.events() == 0)
     throw files::FileError(fmt::format("{}: no event in this part; nothing written", arguments.log));
   part.finish();

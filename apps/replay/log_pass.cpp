@@ -8,6 +8,8 @@
 
 #include "command_line/program.h"
 #include "eyeslam/files/file_error.h"
+#include "eyeslam/replay/recomputed_part.h"
+#include "eyeslam/replay/todays_type.h"
 #include "replay/side_video_text.h"
 
 namespace eyeslam::apps {
@@ -51,8 +53,18 @@ std::optional<replay::SortedEvent> LogPass::next()
   return log_.next();
 }
 
-void LogPass::tellDamage() const
+std::optional<replay::SortedEvent> LogPass::nextOfToday()
+try {
+  std::optional<replay::SortedEvent> event = next();
+  if (event) replay::judgeToday(event->event);
+  return event;
+} catch (const replay::ReplayError& error) {
+  throw files::FileError(fmt::format("{}: {}", path_, error.what()));
+}
+
+void LogPass::end() const
 {
+  requireEvents();
   const files::LogDamage& damage = log_.reader().damage();
   if (damage.gaps == 0 && !damage.cut_off) return;
   fmt::print(stderr, "eyeslam-replay: {}: {} bytes of it are no events and were skipped, at {} places; see `info`\n",

@@ -19,6 +19,8 @@ class LogPass {
 
   /// The next event; none at the end or when it was interrupted.
   std::optional<replay::SortedEvent> next();
+  /// The same for what cannot do without any message of ours. @throws files::FileError one is of another version
+  std::optional<replay::SortedEvent> nextOfToday();
 
   const replay::SortedLog& log() const { return log_; }
   Interruption& interruption() { return interruption_; }
@@ -29,8 +31,9 @@ class LogPass {
 
   /// @throws files::FileError when no event was found: it is no log
   void requireEvents() const;
-  /// One line to stderr where anything of the log was skipped.
-  void tellDamage() const;
+  /// The same, and one line to stderr where anything of the log was skipped: for all that do not show its damage
+  /// anyway.
+  void end() const;
 
  private:
   static constexpr std::int64_t kTurn = 256;  // events between looks at signals and clocks

@@ -11,10 +11,9 @@
 #include "eyeslam/files/file_error.h"
 #include "eyeslam/files/partial_file.h"
 #include "eyeslam/replay/logged_scene.h"
-#include "eyeslam/replay/recomputed_part.h"
+#include "eyeslam/replay/message_types.h"
 #include "eyeslam/replay/scene_picture.h"
 #include "eyeslam/replay/side_video.h"
-#include "eyeslam/replay/todays_type.h"
 #include "replay/log_pass.h"
 #include "replay/side_video_text.h"
 
@@ -37,9 +36,8 @@ class OverlayRun {
   }
 
   void run()
-  try {
-    while (const auto event = pass_.next()) {
-      replay::judgeToday(event->event);
+  {
+    while (const auto event = pass_.nextOfToday()) {
       const bool pose = event->event.channel == "RETINA_POSE" && isOfThisRun(*event);
       if (pose) drawWaiting();
       scene_.take(*event);
@@ -48,8 +46,6 @@ class OverlayRun {
     }
     drawWaiting();
     finish();
-  } catch (const replay::ReplayError& error) {
-    throw files::FileError(fmt::format("{}: {}", arguments_.log, error.what()));
   }
 
  private:
@@ -97,8 +93,7 @@ class OverlayRun {
 
   void finish()
   {
-    pass_.requireEvents();
-    pass_.tellDamage();
+    pass_.end();
     if (written_ == 0) {
       throw files::FileError(
           fmt::format("{}: no RETINA_POSE with a picture in this part; nothing written", arguments_.log));

@@ -66,8 +66,7 @@ class Playback {
     while (const auto event = pass_.next()) {
       if (selection_.takes(*event) && waitFor(*event)) send(*event);
     }
-    pass_.requireEvents();
-    pass_.tellDamage();
+    pass_.end();
     report();
   }
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <iterator>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -18,6 +17,7 @@
 #include "eyeslam/files/file_error.h"
 #include "eyeslam/files/partial_file.h"
 #include "eyeslam/files/whole_file.h"
+#include "eyeslam/replay/recorded_trial.h"
 #include "eyeslam/replay/servo_replay.h"
 #include "eyeslam/replay/video_replay.h"
 #include "eyeslam/servo/servo_configuration.h"
@@ -35,25 +35,19 @@ constexpr std::int64_t kBeyond_us = 1'000'000;  // read behind the part, so that
 
 using Changes = std::vector<configuration::Assignment>;
 
-bool isOfTrialsTracker(const configuration::Assignment& one) { return one.key.rfind("vision.", 0) == 0; }
-
-bool isOfTrialsServo(const configuration::Assignment& one)
-{
-  constexpr const char* kGroups[] = {"servo.", "preparation.", "calibration."};
-  return std::any_of(std::begin(kGroups), std::end(kGroups),
-                     [&one](const char* group) { return one.key.rfind(group, 0) == 0; });
-}
-
 // What changes nothing of what vision says lets the servo hear what was recorded: the comparison is of the servo alone.
-bool changesTracker(const Changes& changes) { return std::any_of(changes.begin(), changes.end(), isOfTrialsTracker); }
+bool changesTracker(const Changes& changes)
+{
+  return std::any_of(changes.begin(), changes.end(), [](const auto& one) { return replay::isOfTracker(one.key); });
+}
 
 // A question that nothing here can answer must not be answered with "no difference".
 void requirePartFor(const Changes& changes, bool tracker, bool servo)
 {
   for (const configuration::Assignment& one : changes) {
-    if (!tracker && isOfTrialsTracker(one))
+    if (!tracker && replay::isOfTracker(one.key))
       throw UsageError(one.key + ": the tracker is not computed again; its video is needed, and --only servo is not");
-    if (!servo && isOfTrialsServo(one))
+    if (!servo && replay::isOfServo(one.key))
       throw UsageError(one.key + ": the servo is not computed again; leave out --only");
   }
 }
@@ -106,8 +100,7 @@ class RecomputeRun {
       if (tracker_) tracker_->take(*event);
       if (servo_ && !servo_hears_tracker_) servo_->take(*event);
     }
-    pass_.requireEvents();
-    pass_.tellDamage();
+    pass_.end();
     for (RecomputedPart* part : parts()) part->finish();
     requireAny();
     tell();

@@ -5,8 +5,6 @@
 
 #include "eyeslam/files/file_error.h"
 #include "eyeslam/files/output_folder.h"
-#include "eyeslam/replay/recomputed_part.h"
-#include "eyeslam/replay/todays_type.h"
 #include "eyeslam/trials/results_table.h"
 #include "eyeslam/trials/trial_judge.h"
 #include "eyeslam/trials/trial_report.h"
@@ -23,19 +21,13 @@ trials::TrialRecord judged(const ReplayArguments& arguments)
 try {
   LogPass pass(arguments, "judging");
   trials::TrialJudge judge;
-  while (const auto event = pass.next()) {
-    replay::judgeToday(event->event);
-    judge.take(event->event);
-  }
-  pass.requireEvents();
-  pass.tellDamage();
+  while (const auto event = pass.nextOfToday()) judge.take(event->event);
+  pass.end();
   if (pass.interrupted()) throw files::FileError(arguments.log + ": interrupted; nothing written");
   if (!judge.isTrial()) {
     throw files::FileError(arguments.log + ": no MARK START of a trial: nothing says what was to be reached");
   }
   return judge.record();
-} catch (const replay::ReplayError& error) {
-  throw files::FileError(fmt::format("{}: {}", arguments.log, error.what()));
 } catch (const configuration::ConfigurationError& error) {  // of the log's MARK, not of the call
   throw files::FileError(fmt::format("{}: {}", arguments.log, error.what()));
 }

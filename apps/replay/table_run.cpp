@@ -49,8 +49,7 @@ void writeTables(const ReplayArguments& arguments)
   while (const auto event = pass.next()) {
     if (selection.takes(*event)) tables.add(*event);
   }
-  pass.requireEvents();
-  pass.tellDamage();
+  pass.end();
   if (tables.counts().empty())
     throw files::FileError(fmt::format("{}: no event in this part; nothing written", arguments.log));
   tables.finish();

@@ -10,9 +10,8 @@
 namespace eyeslam::replay {
 
 /// What `read` makes of a MARK START's configuration.
-/// @throws ReplayError  it is not understood; names the version that wrote it, for it is the log's fault and not that
-/// of
-///         what the user asked to be otherwise
+/// @throws ReplayError  it is not understood; names the version that wrote it, for that is the log's fault and not the
+///                      user's
 template <class Read>
 auto recordedConfiguration(const mark_t& mark, const Read& read)
 {

@@ -14,18 +14,13 @@ namespace {
 using configuration::ConfigurationError;
 using configuration::Field;
 
-bool canBeOtherwise(const std::string& key)
-{
-  constexpr const char* kComputed[] = {"servo.", "preparation.", "calibration.", "vision."};
-  return std::any_of(std::begin(kComputed), std::end(kComputed),
-                     [&key](const char* group) { return key.rfind(group, 0) == 0; });
-}
-
 void requireSameExperiment(trials::TrialSetting recorded, trials::TrialSetting asked)
 {
   const std::vector<Field> was = configuration::fieldsOf(recorded), is = configuration::fieldsOf(asked);
   for (std::size_t i = 0; i < was.size(); ++i) {
-    if (canBeOtherwise(was[i].key) || configuration::textOf(was[i]) == configuration::textOf(is[i])) continue;
+    if (isOfTracker(was[i].key) || isOfServo(was[i].key) ||
+        configuration::textOf(was[i]) == configuration::textOf(is[i]))
+      continue;
     throw ConfigurationError(fmt::format(
         "{}: decided on what is recorded, '{}'; keys of servo, preparation, calibration and vision can be otherwise",
         was[i].key, configuration::textOf(was[i])));
@@ -33,6 +28,15 @@ void requireSameExperiment(trials::TrialSetting recorded, trials::TrialSetting a
 }
 
 }  // namespace
+
+bool isOfTracker(const std::string& key) { return key.rfind("vision.", 0) == 0; }
+
+bool isOfServo(const std::string& key)
+{
+  constexpr const char* kGroups[] = {"servo.", "preparation.", "calibration."};
+  return std::any_of(std::begin(kGroups), std::end(kGroups),
+                     [&key](const char* group) { return key.rfind(group, 0) == 0; });
+}
 
 std::optional<RecordedTrial> recordedTrial(const mark_t& mark, const std::vector<configuration::Assignment>& changes)
 {

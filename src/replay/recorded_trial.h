@@ -21,6 +21,10 @@ struct RecordedTrial {
   std::string version;
 };
 
+/// Whether a key of a trial's configuration is the tracker's, or the servo's: these two can be computed again.
+bool isOfTracker(const std::string& key);
+bool isOfServo(const std::string& key);
+
 /// @param changes  keys as `eyeslam-trial` has them, over what was recorded. Those of the servo (`servo`,
 ///                 `preparation`, `calibration`) and of the tracker (`vision`) may be otherwise; the others decided on
 ///                 what is recorded
