@@ -24,7 +24,9 @@ target_compile_options(eyeslam_build_options INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow $<$<BOOL:${EYESLAM_WERROR}>:-Werror>
   $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>) # which g++ leaves out of -Wconversion
 add_link_options(-Wl,--as-needed) # or every test would load OpenCV's windows
+set(EYESLAM_SANITIZED OFF)
 if(EYESLAM_SANITIZE)
+  set(EYESLAM_SANITIZED ON)
   add_compile_options(-fsanitize=${EYESLAM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -O1
     -g1 -UNDEBUG -D_GLIBCXX_ASSERTIONS)
   add_link_options(-fsanitize=${EYESLAM_SANITIZE})

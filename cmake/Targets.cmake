@@ -28,7 +28,7 @@ function(eyeslam_program name source)
 endfunction()
 
 # eyeslam_test(folder/name_test LIBRARIES targets [SLOW]): one executable and one ctest entry a test file. SLOW: not
-# under sanitizers, such as whole sequences.
+# under sanitizers, such as whole sequences; and optimised as the libraries are, for it spends its time.
 function(eyeslam_test path)
   cmake_parse_arguments(arg "SLOW" "TIMEOUT" "LIBRARIES" ${ARGN})
   get_filename_component(name ${path} NAME)
@@ -41,7 +41,13 @@ function(eyeslam_test path)
   endif()
   set_tests_properties(${name} PROPERTIES TIMEOUT ${arg_TIMEOUT}
     ENVIRONMENT "EYESLAM_SHARED=${PROJECT_SOURCE_DIR}/../shared;OMP_NUM_THREADS=1;TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/thread_sanitizer.supp")
+  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
   if(arg_SLOW)
     set_tests_properties(${name} PROPERTIES LABELS slow)
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ${EYESLAM_SANITIZED})
+  else()
+    # Two thirds of a test's building are headers and the optimiser; -pthread, or the headers would not be the same.
+    target_compile_options(${name} PRIVATE -pthread $<$<CONFIG:Release>:-O1>)
+    target_precompile_headers(${name} REUSE_FROM eyeslam_test_headers)
   endif()
 endfunction()

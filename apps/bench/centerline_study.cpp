@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "bench/data_name.h"
 #include "command_line/program.h"
 #include "command_line/progress.h"
 #include "eyeslam/files/file_error.h"
@@ -19,12 +20,6 @@ namespace {
 
 constexpr double kMaskTolerance_px = 2.0;
 constexpr double kMapTolerance_px = 4.0;
-
-std::string nameOf(const std::string& known)
-{
-  const std::filesystem::path path = std::filesystem::path(known).lexically_normal();
-  return (path.has_filename() ? path : path.parent_path()).filename().string();
-}
 
 std::vector<fixtures::Vessel> vesselsOf(const retina::VesselMap& map)
 {

@@ -13,6 +13,7 @@
 #include "eyeslam/files/thinning.h"
 #include "eyeslam/files/video_source.h"
 #include "eyeslam/retina/pose2.h"
+#include "eyeslam/retina/units.h"
 #include "eyeslam/tracking/cross_vessel_smoother.h"
 #include "eyeslam/tracking/ridge_detector.h"
 #include "eyeslam/tracking/spurious_detection_filter.h"
@@ -62,7 +63,7 @@ class VesselTruth {
 
   void count(const VesselPoints& points, const Frame& frame, const OcclusionMask& mask, const files::TruthPose& pose)
   {
-    const retina::Pose2 map_T_frame{pose.x_px, pose.y_px, pose.theta_deg * CV_PI / 180.0, pose.scale};
+    const retina::Pose2 map_T_frame{pose.x_px, pose.y_px, pose.theta_deg * kPi / 180.0, pose.scale};
     ++frames_;
     countPoints(points, frame, map_T_frame);
     countCentrelines(frame, mask, map_T_frame.inverse());

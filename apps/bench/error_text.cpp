@@ -5,11 +5,12 @@
 
 #include <utility>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::apps {
 
 trials::ErrorFigures inMicrometres(const std::vector<double>& errors_m)
 {
-  constexpr double kMicro = 1e-6;
   std::vector<double> um;
   um.reserve(errors_m.size());
   for (const double error : errors_m) um.push_back(error / kMicro);

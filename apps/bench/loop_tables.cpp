@@ -11,6 +11,7 @@
 
 #include "bench/error_text.h"
 #include "command_line/progress.h"
+#include "eyeslam/retina/units.h"
 #include "eyeslam/trials/loop_conditions.h"
 #include "eyeslam/trials/trace_task.h"
 
@@ -23,8 +24,6 @@ using trials::LoopTrialSetting;
 using trials::SeedFigures;
 
 namespace {
-
-constexpr double kMicro = 1e-6;
 
 using TaskOfSeed = std::function<LoopTask(std::uint64_t seed)>;
 

@@ -7,6 +7,7 @@
 #include "eyeslam/baselines/method.h"
 #include "eyeslam/files/test_sequence.h"
 #include "eyeslam/files/video_source.h"
+#include "eyeslam/retina/units.h"
 
 namespace eyeslam::apps {
 
@@ -27,7 +28,7 @@ files::PoseScore scoreMethod(const std::string& method, const std::string& seque
     const tracking::TrackResult& result = tracker->track(frame.image);
     const double cpu_ms = threadCpuMilliseconds() - start;
     const retina::Pose2& pose = result.map_T_frame;
-    poses.push_back({result.tracked, pose.x, pose.y, pose.theta * 180.0 / M_PI, cpu_ms});
+    poses.push_back({result.tracked, pose.x, pose.y, pose.theta * 180.0 / kPi, cpu_ms});
     step(frame.number);
   }
   return files::scorePoses(truth.poses, poses);

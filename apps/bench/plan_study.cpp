@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <set>
 
+#include "bench/data_name.h"
 #include "command_line/clocks.h"
 #include "eyeslam/files/file_error.h"
 #include "eyeslam/files/map_reader.h"
@@ -98,12 +99,6 @@ void countPlaces(const retina::VesselMap& map, const TouchedPlaces& touched, Bur
       if (room.allows(place)) touched.count(place.x(), place.y(), risk);
     }
   }
-}
-
-std::string nameOf(const std::string& sequence)
-{
-  const fs::path path = fs::path(sequence).lexically_normal();
-  return (path.has_filename() ? path : path.parent_path()).filename().string();
 }
 
 /// The truth as a map that lacks vessels narrower than `least_px`.

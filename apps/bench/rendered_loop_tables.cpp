@@ -17,6 +17,7 @@
 #include "bench/error_text.h"
 #include "command_line/progress.h"
 #include "command_line/version.h"
+#include "eyeslam/retina/units.h"
 #include "eyeslam/trials/error_figures.h"
 #include "eyeslam/trials/loop_conditions.h"
 #include "eyeslam/trials/trial.h"
@@ -28,24 +29,23 @@ using trials::ErrorFigures;
 
 namespace {
 
-constexpr double kMicro = 1e-6;
 constexpr double kFull = 2.0;  // full-resolution px a half-resolution one
 
-struct HoldCase {
+struct RenderedHold {
   const char* motion;
   double camera_hz, latency_ms;
   const char *null_at, *study, *bound;
   const char* aid = "hard";
 };
-constexpr HoldCase kHolds[] = {{"in_situ", 30, 20, "servo", "18.1 / 13.5 / 29", "20 / 15 / 33"},
-                               {"in_situ", 120, 5, "servo", "14.1 / 11.3 / 25", "16 / - / 27"},
-                               {"in_situ", 120, 5, "controller", "11.7 / 9.3 / 20", "13 / - / 23"},
-                               {"saccade", 30, 20, "servo", "99 / 13.9 / 34", ""},
-                               {"in_situ", 30, 20, "controller", "16.4 / 12.0 / 26", ""},
-                               {"saccade", 120, 5, "servo", "", ""}};
-constexpr HoldCase kBareHand = {"in_situ", 30, 20, "servo", "233 / 192 / 407", "", "none"};
+constexpr RenderedHold kRenderedHolds[] = {{"in_situ", 30, 20, "servo", "18.1 / 13.5 / 29", "20 / 15 / 33"},
+                                           {"in_situ", 120, 5, "servo", "14.1 / 11.3 / 25", "16 / - / 27"},
+                                           {"in_situ", 120, 5, "controller", "11.7 / 9.3 / 20", "13 / - / 23"},
+                                           {"saccade", 30, 20, "servo", "99 / 13.9 / 34", ""},
+                                           {"in_situ", 30, 20, "controller", "16.4 / 12.0 / 26", ""},
+                                           {"saccade", 120, 5, "servo", "", ""}};
+constexpr RenderedHold kBareHand = {"in_situ", 30, 20, "servo", "233 / 192 / 407", "", "none"};
 
-trials::TrialSetting settingOf(const HoldCase& c, double seconds)
+trials::TrialSetting settingOf(const RenderedHold& c, double seconds)
 {
   trials::Scenario scenario;
   scenario.name = "hold";
@@ -68,7 +68,7 @@ struct Held {
   std::int64_t frames = 0, tracked = 0;
 };
 
-Held hold(const trials::TrialSetting& setting, std::uint64_t seed)
+Held renderedHold(const trials::TrialSetting& setting, std::uint64_t seed)
 {
   const auto scene = std::make_shared<const trials::TrialScene>(setting, seed);
   trials::TrialJudge judge(scene);
@@ -89,14 +89,14 @@ Held hold(const trials::TrialSetting& setting, std::uint64_t seed)
 }
 
 // Seeds on all cores: each trial is one thread's and knows nothing of the others.
-std::vector<Held> run(const HoldCase& c, const LoopInputs& inputs)
+std::vector<Held> run(const RenderedHold& c, const LoopInputs& inputs)
 {
   const trials::TrialSetting setting = settingOf(c, inputs.seconds);
   std::vector<Held> results(static_cast<std::size_t>(inputs.seeds));
   std::atomic<std::size_t> next{0}, done{0};
   const auto work = [&] {
     for (std::size_t seed = next++; seed < results.size(); seed = next++) {
-      results[seed] = hold(setting, seed);
+      results[seed] = renderedHold(setting, seed);
       ++done;
     }
   };
@@ -114,7 +114,7 @@ std::vector<Held> run(const HoldCase& c, const LoopInputs& inputs)
   return results;
 }
 
-struct Line {
+struct RenderedLine {
   std::vector<ErrorFigures> tips, poses;
   trials::RecoveryCount recoveries;
   double fastest = 0.0, worst_pivot = 0.0;  // m/s, m
@@ -122,7 +122,7 @@ struct Line {
   std::vector<std::string> kinds;  // of stops, each once
   std::size_t stops = 0;
 
-  Line(const HoldCase& c, const LoopInputs& inputs)
+  RenderedLine(const RenderedHold& c, const LoopInputs& inputs)
   {
     const trials::RecoveryTiming timing{1e-3 * c.latency_ms, 1.0 / c.camera_hz,
                                         1e-3 * settingOf(c, inputs.seconds).servo.cycle.limits.speed_mm_s};
@@ -144,7 +144,7 @@ struct Line {
 
 std::string share(std::int64_t part, std::int64_t whole) { return fmt::format("{} of {}", part, whole); }
 
-void printLine(const HoldCase& c, const Line& line)
+void printLine(const RenderedHold& c, const RenderedLine& line)
 {
   const trials::RecoveryCount& jumps = line.recoveries;
   fmt::print("| {} | {}/{} | {} | {} | {} | {} | {:.1f} / {:.1f} | {} | {:.0f} mm/s | {:.0f} | {} | {} |\n", c.motion,
@@ -163,9 +163,9 @@ void printRenderedLoopTables(const LoopInputs& inputs)
       "\n| motion | camera | null subtracted by the | tip RMS ± spread / median / 95 % | loop study | bound | pose RMS "
       "/ 99 % | frames tracked | fastest tip | worst pivot | back in time after a jump; of those without a refused "
       "frame | stops |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
-  for (const HoldCase& c : kHolds) printLine(c, Line(c, inputs));
+  for (const RenderedHold& c : kRenderedHolds) printLine(c, RenderedLine(c, inputs));
   fmt::print("| in_situ | none | unaided hand | {} | {} | | | | | | | |\n",
-             said(trials::overSeeds(Line(kBareHand, inputs).tips)), kBareHand.study);
+             said(trials::overSeeds(RenderedLine(kBareHand, inputs).tips)), kBareHand.study);
 }
 
 }  // namespace eyeslam::apps

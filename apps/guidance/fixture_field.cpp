@@ -3,11 +3,12 @@
 
 #include <cmath>
 
+#include "eyeslam/simulation/loop_period.h"
+
 namespace eyeslam::apps {
 
 namespace {
 
-constexpr double kPeriod_s = 1e-3;
 constexpr int kCycles = 400;  // a bead at its slowest has come to rest
 
 // The goal of a hand that comes to a place and stays there; the hand itself when no vessel takes hold of it.
@@ -17,7 +18,7 @@ Eigen::Vector3d goalAtRest(const fixtures::CenterlineIndex& vessels, const fixtu
   fixtures::CurveFixture fixture(options);
   Eigen::Vector3d goal = hand;
   for (int i = 0; i < kCycles; ++i) {
-    goal = fixtures::Composition(hand).with(fixture.constrain({hand, kPeriod_s, vessels})).goal();
+    goal = fixtures::Composition(hand).with(fixture.constrain({hand, simulation::kPeriod_s, vessels})).goal();
     if (!fixture.following()) return hand;
   }
   return goal;

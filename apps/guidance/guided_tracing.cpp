@@ -3,13 +3,12 @@
 
 #include <utility>
 
+#include "eyeslam/retina/units.h"
+#include "eyeslam/simulation/loop_period.h"
+
 namespace eyeslam::apps {
 
 namespace {
-
-constexpr double kPeriod_s = 1e-3;
-constexpr double kMicro = 1e-6;
-constexpr double kMilli = 1e-3;
 
 fixtures::CurveFixture curveFixture(const GuidedTracingOptions& options)
 {
@@ -25,8 +24,8 @@ GuidedTracing::GuidedTracing(const GuidedTracingOptions& options,
                              std::vector<Eigen::Vector3d> path, const Eigen::Vector3d& centre)
     : options_(options),
       path_(std::move(path), options.speed_mm_s * kMilli),
-      hand_({}, path_.at(0.0).position, options.seed, kPeriod_s),
-      retina_(simulation::retinaMotionOptions(options.motion), options.seed, centre, kPeriod_s)
+      hand_({}, path_.at(0.0).position, options.seed, simulation::kPeriod_s),
+      retina_(simulation::retinaMotionOptions(options.motion), options.seed, centre, simulation::kPeriod_s)
 {
   now_.null = now_.tip = path_.at(0.0).position;
   now_.world_T_retina = retina_.step(hand_.state()).world_T_retina;
@@ -41,7 +40,7 @@ void GuidedTracing::adopt(std::shared_ptr<const fixtures::CenterlineIndex> vesse
 
 const TracingStep& GuidedTracing::step(Retina seen)
 {
-  now_.t_s = kPeriod_s * static_cast<double>(steps_++);
+  now_.t_s = simulation::kPeriod_s * static_cast<double>(steps_++);
   now_.target = path_.at(now_.t_s);
   const simulation::SurgeonView view{now_.world_T_retina.toWorld(now_.target.position),
                                      now_.world_T_retina.rotation() * now_.target.velocity, now_.tip, now_.null};
@@ -51,8 +50,8 @@ const TracingStep& GuidedTracing::step(Retina seen)
   now_.world_T_retina = retina_.step(hand_.state()).world_T_retina;
   now_.tip = now_.null;
   if (options_.aid != Aid::none) {
-    fixture_ =
-        fixtures_.evaluate({now_.null, now_.world_T_retina.isometry(), kPeriod_s, seen == Retina::tracked, map_id_});
+    fixture_ = fixtures_.evaluate(
+        {now_.null, now_.world_T_retina.isometry(), simulation::kPeriod_s, seen == Retina::tracked, map_id_});
     if (fixture_.known) now_.tip = fixture_.goal;
   }
   now_.tip_retina = now_.world_T_retina.toRetina(now_.tip);

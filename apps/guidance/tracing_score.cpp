@@ -4,17 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
+#include "eyeslam/simulation/loop_period.h"
 #include "eyeslam/simulation/random.h"
 
 namespace eyeslam::apps {
 
 namespace {
 
-constexpr double kUm = 1e6;
 constexpr double kUm_per_px = 5.0;
 constexpr double kHeight = 0.5e-3;
 constexpr double kSettle_s = 4.0;
-constexpr double kPeriod_s = 1e-3;
 constexpr double kFar = 5e-3;       // nobody is farther off, m
 constexpr double kYields = 600e-6;  // from here on a soft fixture yields more than lambda
 
@@ -30,16 +30,16 @@ void look(const GuidedTracing& tracing, const TracingStep& step, const fixtures:
   const auto near = vessel.nearest(step.tip_retina.head<2>(), kFar);
   const double error = near ? near->distance : kFar;
   sums.square += error * error;
-  sums.errors_um.push_back(static_cast<float>(error * kUm));
+  sums.errors_um.push_back(static_cast<float>(error * kPerMicro));
   if (options.aid == Aid::none) return;
   const fixtures::FixtureOutput& fixture = tracing.fixture();
   if (fixture.reason == retina::Reason::speed_limited) ++sums.left_behind;
   if (!inForce(fixture)) return;
-  score.in_force_max_um = std::max(score.in_force_max_um, error * kUm);
+  score.in_force_max_um = std::max(score.in_force_max_um, error * kPerMicro);
   const double hand = (fixture.filtered_null.head<2>() - fixture.curve->anchor()).norm();
   const double goal = (step.tip_retina.head<2>() - fixture.curve->anchor()).norm();
   const double lambda = options.aid == Aid::soft ? options.lambda : 0.0;
-  if (hand < kYields) score.law_max_um = std::max(score.law_max_um, std::abs(goal - lambda * hand) * kUm);
+  if (hand < kYields) score.law_max_um = std::max(score.law_max_um, std::abs(goal - lambda * hand) * kPerMicro);
 }
 
 float quantile(std::vector<float>& values, double share)
@@ -58,7 +58,6 @@ bool inForce(const fixtures::FixtureOutput& fixture)
 
 std::vector<Eigen::Vector3d> studyPath(std::uint64_t seed, double height)
 {
-  constexpr double kTwoPi = 6.28318530717958647693;
   constexpr std::uint64_t kStream = 90;
   simulation::Random random(seed, kStream);
   const double a = random.uniform(0.0, kTwoPi);
@@ -102,12 +101,12 @@ TracingScore scoreTracing(const GuidedTracingOptions& options, std::uint64_t see
     GuidedTracing tracing(seeded, vessel, path, {1.5e-3, 0.0, 0.0});
     const std::size_t before = all.errors_um.size();
     all.square = 0.0;
-    const auto steps = static_cast<int>(std::lround((kSettle_s + seconds) / kPeriod_s));
+    const auto steps = static_cast<int>(std::lround((kSettle_s + seconds) / simulation::kPeriod_s));
     for (int k = 0; k < steps; ++k) {
       const TracingStep& step = tracing.step();
       if (step.t_s >= kSettle_s) look(tracing, step, *vessel, seeded, all, score);
     }
-    const double rms = kUm * std::sqrt(all.square / static_cast<double>(all.errors_um.size() - before));
+    const double rms = kPerMicro * std::sqrt(all.square / static_cast<double>(all.errors_um.size() - before));
     score.rms_um += rms / static_cast<double>(seeds);
     square_of_rms += rms * rms / static_cast<double>(seeds);
   }

@@ -6,12 +6,13 @@
 #include "command_line/version.h"
 #include "replay/survey_text.h"
 
+#include "eyeslam/servo/loop_time.h"
+
 namespace eyeslam::apps {
 namespace {
 
 using nlohmann::json;
-
-double seconds(std::int64_t us) { return 1e-6 * static_cast<double>(us); }
+using servo::seconds;
 
 json gapJson(const replay::LongestGap& gap) { return {{"s", seconds(gap.us)}, {"at_s", seconds(gap.since_us)}}; }
 

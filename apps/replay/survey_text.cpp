@@ -10,15 +10,17 @@
 
 #include "command_line/progress.h"
 
+#include "eyeslam/servo/loop_time.h"
+
 namespace eyeslam::apps {
 namespace {
 
 using replay::ChannelFindings;
 using replay::LogSurvey;
+using servo::seconds;
 
 const char* const kKinds[] = {"start", "stop", "note"};  // as in mark_t
 
-double seconds(std::int64_t us) { return 1e-6 * static_cast<double>(us); }
 double milliseconds(std::int64_t us) { return 1e-3 * static_cast<double>(us); }
 
 std::string dateText(std::int64_t utime)

@@ -11,12 +11,12 @@
 #include "eyeslam/files/file_error.h"
 #include "eyeslam/files/test_sequence.h"
 #include "eyeslam/files/video_file.h"
+#include "eyeslam/retina/units.h"
 #include "eyeslam/simulation/sequence_renderer.h"
 
 namespace eyeslam::apps {
 namespace {
 
-constexpr double kRadToDeg = 57.29577951308232;
 constexpr int kCrf = 18;  // of the sequences with truth
 
 cv::Size sizeOf(const SimArguments& arguments, const simulation::Condition& condition)
@@ -42,10 +42,11 @@ try {
 void append(const simulation::RenderedFrame& frame, files::TestSequence& sequence)
 {
   const auto& pose = frame.map_T_frame;
-  sequence.truth.poses.push_back({frame.t_s, pose.x, pose.y, pose.theta * kRadToDeg, pose.scale, frame.visible});
+  sequence.truth.poses.push_back(
+      {frame.t_s, pose.x, pose.y, pose.theta * kDegreesPerRadian, pose.scale, frame.visible});
   const auto& tool = frame.tool;
   sequence.truth.tools.push_back(
-      {tool.present, tool.tip.x, tool.tip.y, tool.shaft_angle * kRadToDeg, tool.shaft_width});
+      {tool.present, tool.tip.x, tool.tip.y, tool.shaft_angle * kDegreesPerRadian, tool.shaft_width});
   sequence.tool_cover.push_back(frame.tool_cover);
   if (frame.fired) sequence.burns.push_back(frame.frame);
 }

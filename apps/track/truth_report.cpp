@@ -7,10 +7,11 @@
 #include <cmath>
 #include <filesystem>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::apps {
 namespace {
 
-constexpr double kDegreesPerRadian = 180.0 / M_PI;
 constexpr double kMapPeriod_s = 0.5;    // as dense as the paper's curve
 constexpr std::int64_t kMostMaps = 48;  // each keeps a picture
 

@@ -15,11 +15,11 @@ using retina::Reason;
 
 namespace {
 
-constexpr float kRatio = 0.8F;         // of the best distance to the second best; source: Lowe 2004
-constexpr double kInlier_px = 1.5;     // frame px; 1 to 3 alike
-constexpr int kLeastInliers = 12;      // a chance similarity gathers 4 or 5
-constexpr double kKeyframe_px = 40.0;  // moved so far from every keyframe, a frame becomes one
-constexpr int kKeyframeInliers = 30;   // if it lies well
+constexpr float kRatio = 0.8F;             // of the best distance to the second best; source: Lowe 2004
+constexpr double kMatchedWithin_px = 1.5;  // frame px; 1 to 3 alike
+constexpr int kLeastMatched = 12;          // a chance similarity gathers 4 or 5
+constexpr double kKeyframe_px = 40.0;      // moved so far from every keyframe, a frame becomes one
+constexpr int kKeyframeInliers = 30;       // if it lies well
 
 }  // namespace
 
@@ -50,7 +50,7 @@ Reason FeatureMethod::observe(const cv::Mat& image)
   if (const Reason why = masked_.assign(image); why != Reason::none) return why;
   makeContrastPicture(masked_.frame(), masked_.mask(), picture_, visible_);
   features_->detectAndCompute(picture_, visible_, now_.keypoints, now_.descriptors);
-  return static_cast<int>(now_.keypoints.size()) < kLeastInliers ? Reason::too_few_points : Reason::none;
+  return static_cast<int>(now_.keypoints.size()) < kLeastMatched ? Reason::too_few_points : Reason::none;
 }
 
 const FeatureMethod::Keyframe& FeatureMethod::nearestKeyframe() const
@@ -74,13 +74,14 @@ std::optional<FeatureMethod::Fit> FeatureMethod::fitTo(const Keyframe& keyframe)
     from.push_back(now_.keypoints[static_cast<std::size_t>(pair[0].queryIdx)].pt - middle);
     to.push_back(keyframe.keypoints[static_cast<std::size_t>(pair[0].trainIdx)].pt - middle);
   }
-  if (static_cast<int>(from.size()) < kLeastInliers) return std::nullopt;
+  if (static_cast<int>(from.size()) < kLeastMatched) return std::nullopt;
   cv::Mat inliers;
-  const cv::Mat similarity = cv::estimateAffinePartial2D(from, to, inliers, cv::RANSAC, kInlier_px, 2000, 0.999, 20);
+  const cv::Mat similarity =
+      cv::estimateAffinePartial2D(from, to, inliers, cv::RANSAC, kMatchedWithin_px, 2000, 0.999, 20);
   if (similarity.empty()) return std::nullopt;
   Fit fit;
   fit.inliers = cv::countNonZero(inliers);
-  if (fit.inliers < kLeastInliers) return std::nullopt;
+  if (fit.inliers < kLeastMatched) return std::nullopt;
   const double c = similarity.at<double>(0, 0), s = similarity.at<double>(1, 0);
   fit.keyframe_T_frame = {similarity.at<double>(0, 2), similarity.at<double>(1, 2), std::atan2(s, c), std::hypot(c, s)};
   return fit;

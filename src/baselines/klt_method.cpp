@@ -16,11 +16,11 @@ using retina::Reason;
 namespace {
 
 constexpr int kCorners = 400;
-constexpr int kRenewBelow = 150;    // corners left
-constexpr int kLeastInliers = 20;   // a chance similarity gathers 4 or 5
-constexpr double kInlier_px = 1.5;  // frame px
-const cv::Size kWindow(21, 21);     // frame px
-constexpr int kPyramid = 3;         // levels above the frame: jumps to some 40 px
+constexpr int kRenewBelow = 150;            // corners left
+constexpr int kLeastFollowed = 20;          // a chance similarity gathers 4 or 5
+constexpr double kFollowedWithin_px = 1.5;  // frame px
+const cv::Size kWindow(21, 21);             // frame px
+constexpr int kPyramid = 3;                 // levels above the frame: jumps to some 40 px
 
 }  // namespace
 
@@ -46,7 +46,7 @@ Reason KltMethod::observe(const cv::Mat& image)
 // Moves the corners on, keeps those that agree on one similarity, and takes the pose from it.
 bool KltMethod::follow()
 {
-  if (static_cast<int>(corners_.size()) < kLeastInliers) return false;
+  if (static_cast<int>(corners_.size()) < kLeastFollowed) return false;
   std::vector<cv::Point2f> moved;
   std::vector<std::uint8_t> found;
   std::vector<float> errors;
@@ -62,10 +62,11 @@ bool KltMethod::follow()
     to.push_back(chosen_[i]);
     places.push_back(moved[i]);
   }
-  if (static_cast<int>(from.size()) < kLeastInliers) return false;
+  if (static_cast<int>(from.size()) < kLeastFollowed) return false;
   std::vector<std::uint8_t> inliers;
-  const cv::Mat similarity = cv::estimateAffinePartial2D(from, to, inliers, cv::RANSAC, kInlier_px, 2000, 0.999, 20);
-  if (similarity.empty() || cv::countNonZero(inliers) < kLeastInliers) return false;
+  const cv::Mat similarity =
+      cv::estimateAffinePartial2D(from, to, inliers, cv::RANSAC, kFollowedWithin_px, 2000, 0.999, 20);
+  if (similarity.empty() || cv::countNonZero(inliers) < kLeastFollowed) return false;
   corners_.clear();
   chosen_.clear();
   for (std::size_t i = 0; i < inliers.size(); ++i) {

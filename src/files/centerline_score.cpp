@@ -6,20 +6,14 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "eyeslam/files/distance_picture.h"
 #include "eyeslam/files/thinning.h"
+#include "eyeslam/tracking/sub_pixel.h"
 
 namespace eyeslam::files {
 namespace {
 
 constexpr double kCoveredWithin_px = 4.0;  // as for maps (MapScorer)
-constexpr int kShift = 4;                  // OpenCV draws in sixteenths of a px
-
-cv::Mat_<float> distanceTo(const cv::Mat_<std::uint8_t>& marked)
-{
-  cv::Mat_<float> distance(marked.size(), 1e9F);
-  if (cv::countNonZero(marked) > 0) cv::distanceTransform(marked == 0, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-  return distance;
-}
 
 class Ruler {
  public:
@@ -47,13 +41,11 @@ class Ruler {
   double recall(const std::vector<fixtures::Vessel>& vessels) const
   {
     cv::Mat_<std::uint8_t> drawn(lines_.size(), std::uint8_t{0});
-    const auto fixed = [this](const fixtures::CenterlinePoint& point) {
-      const cv::Point2d at = place(point) * (1 << kShift);
-      return cv::Point(cvRound(at.x), cvRound(at.y));
-    };
+    const auto fixed = [this](const fixtures::CenterlinePoint& point) { return tracking::inSubPixels(place(point)); };
     for (const fixtures::Vessel& vessel : vessels) {
       for (std::size_t i = 1; i < vessel.points.size(); ++i) {
-        cv::line(drawn, fixed(vessel.points[i - 1]), fixed(vessel.points[i]), 255, 1, cv::LINE_8, kShift);
+        cv::line(drawn, fixed(vessel.points[i - 1]), fixed(vessel.points[i]), 255, 1, cv::LINE_8,
+                 tracking::kSubPixelBits);
       }
     }
     const cv::Mat near = distanceTo(drawn) <= tolerance_;

@@ -7,15 +7,14 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "eyeslam/tracking/sub_pixel.h"
+
 namespace eyeslam::files {
 namespace {
 
-const cv::Scalar kInk(60, 56, 52), kGrid(232, 230, 228), kShade(226, 222, 218), kFrame(150, 146, 142);
+const cv::Scalar kChartInk(60, 56, 52), kGrid(232, 230, 228), kShade(226, 222, 218), kFrame(150, 146, 142);
 constexpr int kLeft = 66, kRight = 18, kTop = 34, kBottom = 34;  // px around the plot
 constexpr double kSmall = 0.45, kTitle = 0.52;
-constexpr int kFixed = 4;  // bits of sub-pixel coordinates in OpenCV's drawing
-
-cv::Point fixed(cv::Point2d at) { return {cvRound(at.x * (1 << kFixed)), cvRound(at.y * (1 << kFixed))}; }
 
 double roundStep(double rough)
 {
@@ -89,16 +88,17 @@ void Chart::axes(const std::string& title, const std::string& x_unit)
     const bool last = x == along.back();
     const std::string text = tickText(x, step(along)) + (last ? " " + x_unit : "");
     cv::line(picture_, {at, plot_.y}, {at, plot_.br().y}, kGrid);
-    writeText(picture_, text, {at - textWidth(tickText(x, step(along)), kSmall) / 2, plot_.br().y + 19}, kSmall, kInk);
+    writeText(picture_, text, {at - textWidth(tickText(x, step(along)), kSmall) / 2, plot_.br().y + 19}, kSmall,
+              kChartInk);
   }
   for (const double y : up) {
     const int at = cvRound(place(0.0, y).y);
     const std::string text = tickText(y, step(up));
     cv::line(picture_, {plot_.x, at}, {plot_.br().x, at}, kGrid);
-    writeText(picture_, text, {plot_.x - 8 - textWidth(text, kSmall), at + 5}, kSmall, kInk);
+    writeText(picture_, text, {plot_.x - 8 - textWidth(text, kSmall), at + 5}, kSmall, kChartInk);
   }
   cv::rectangle(picture_, plot_.tl(), plot_.br(), kFrame);
-  writeText(picture_, title, {plot_.x, plot_.y - 10}, kTitle, kInk);
+  writeText(picture_, title, {plot_.x, plot_.y - 10}, kTitle, kChartInk);
 }
 
 void Chart::curve(const std::vector<double>& x, const std::vector<double>& y, const cv::Scalar& colour, int thickness)
@@ -107,8 +107,9 @@ void Chart::curve(const std::vector<double>& x, const std::vector<double>& y, co
   const cv::Point2d corner(plot_.tl());
   for (std::size_t i = 1; i < std::min(x.size(), y.size()); ++i) {
     if (!std::isfinite(y[i - 1]) || !std::isfinite(y[i])) continue;
-    cv::line(inside, fixed(place(x[i - 1], y[i - 1]) - corner), fixed(place(x[i], y[i]) - corner), colour, thickness,
-             cv::LINE_AA, kFixed);
+    cv::line(inside, tracking::inSubPixels(place(x[i - 1], y[i - 1]) - corner),
+             tracking::inSubPixels(place(x[i], y[i]) - corner), colour, thickness, cv::LINE_AA,
+             tracking::kSubPixelBits);
   }
 }
 
@@ -116,7 +117,8 @@ void Chart::dots(const std::vector<double>& x, const std::vector<double>& y, con
 {
   for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
     if (std::isfinite(y[i]))
-      cv::circle(picture_, fixed(place(x[i], y[i])), 4 << kFixed, colour, cv::FILLED, cv::LINE_AA, kFixed);
+      cv::circle(picture_, tracking::inSubPixels(place(x[i], y[i])), 4 << tracking::kSubPixelBits, colour, cv::FILLED,
+                 cv::LINE_AA, tracking::kSubPixelBits);
   }
 }
 
@@ -134,7 +136,7 @@ void Chart::legend(const std::vector<LegendEntry>& entries)
   int right = plot_.br().x;
   for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry) {
     right -= textWidth(entry->name, kSmall);
-    writeText(picture_, entry->name, {right, plot_.y - 10}, kSmall, kInk);
+    writeText(picture_, entry->name, {right, plot_.y - 10}, kSmall, kChartInk);
     cv::line(picture_, {right - 28, plot_.y - 14}, {right - 8, plot_.y - 14}, entry->colour, 3, cv::LINE_AA);
     right -= 46;
   }

@@ -9,6 +9,8 @@
 #include <system_error>
 #include <thread>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::files {
 namespace {
 
@@ -16,7 +18,6 @@ namespace {
 constexpr std::chrono::microseconds kPause{250};
 constexpr double kOpeningPause_s = 0.02;
 constexpr std::int64_t kLongestExposure_us = 60'000'000;
-constexpr double kMicrosecond = 1e-6;  // s
 
 // Of a damaged field too.
 int number(std::uint32_t value) { return static_cast<int>(std::min(value, std::uint32_t{1} << 20U)); }
@@ -157,9 +158,9 @@ bool FrameRingSource::copyNewest(VideoFrame& frame)
   read_ = newest + 1;
   last_number_ = number;
   frame.number = number;
-  frame.t = kMicrosecond * static_cast<double>(utime - first_utime_);
+  frame.t = kMicro * static_cast<double>(utime - first_utime_);
   frame.utime = utime;
-  frame.exposure = kMicrosecond * static_cast<double>(exposure_us);
+  frame.exposure = kMicro * static_cast<double>(exposure_us);
   return true;
 }
 

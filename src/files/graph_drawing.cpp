@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::files {
 namespace {
 
@@ -20,7 +22,7 @@ cv::Scalar colourOf(int id)
 {
   constexpr double kGoldenTurn = 0.61803398875;
   const double hue = std::fmod(kGoldenTurn * id, 1.0);
-  const auto channel = [hue](double shift) { return 175.0 + 80.0 * std::cos(2.0 * CV_PI * (hue - shift)); };
+  const auto channel = [hue](double shift) { return 175.0 + 80.0 * std::cos(kTwoPi * (hue - shift)); };
   return {channel(0.0), channel(1.0 / 3.0), channel(2.0 / 3.0)};
 }
 

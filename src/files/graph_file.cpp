@@ -19,9 +19,8 @@ using fixtures::CenterlinePoint;
 using fixtures::Junction;
 using fixtures::Vessel;
 
-constexpr int kVersion = 1;
+constexpr int kGraphVersion = 1;
 constexpr int kMostIds = 2000000000;
-constexpr double kFarthest_px = 1e6;
 constexpr double kWidest_px = 1e4;
 constexpr double kOnJunction_px = 1e-3;  // a file that was written in fewer digits is still one
 constexpr double kArcLength = 0.01;      // share; and so is one whose arc length was taken along the curve
@@ -136,7 +135,7 @@ void readMapFields(const JsonFields& json, RecordedGraph& graph)
 std::string graphJson(const RecordedGraph& graph)
 {
   nlohmann::ordered_json json;
-  json["version"] = kVersion;
+  json["version"] = kGraphVersion;
   json["map"] = {{"hash", graph.map_hash},
                  {"origin_x", graph.geometry.origin_x},
                  {"origin_y", graph.geometry.origin_y},
@@ -154,8 +153,8 @@ std::string graphJson(const RecordedGraph& graph)
 RecordedGraph graphFrom(const std::string& text, const std::string& path)
 {
   const JsonFields json = JsonFields::parse(text, path);
-  if (json.whole("version", 0, kMostIds) != kVersion) {
-    json.fail("version", fmt::format("only version {} can be read", kVersion));
+  if (json.whole("version", 0, kMostIds) != kGraphVersion) {
+    json.fail("version", fmt::format("only version {} can be read", kGraphVersion));
   }
   json.allowOnly({"version", "map", "vessels", "junctions"});
   RecordedGraph graph;
@@ -166,11 +165,7 @@ RecordedGraph graphFrom(const std::string& text, const std::string& path)
   return graph;
 }
 
-RecordedGraph readGraph(const std::string& path)
-{
-  const auto bytes = readWholeFile(path);
-  return graphFrom({bytes.begin(), bytes.end()}, path);
-}
+RecordedGraph readGraph(const std::string& path) { return graphFrom(readWholeText(path), path); }
 
 void writeGraph(const RecordedGraph& graph, const std::string& path)
 {

@@ -17,9 +17,8 @@ constexpr int kPanel_px = 640;
 constexpr int kGap_px = 12;
 constexpr int kCaption_px = 30;
 constexpr double kDimmed = 0.72;  // of the retina's light, or thin lines drown in it
-const cv::Scalar kPage{255, 255, 255};
+const cv::Scalar kGuidancePage{255, 255, 255};
 const cv::Scalar kWritten{40, 40, 40};
-const cv::Scalar kWhite{255, 255, 255};
 const cv::Scalar kCentreline{255, 235, 160};
 const cv::Scalar kNear{255, 255, 255};
 const cv::Scalar kFar{255, 170, 60};
@@ -159,7 +158,8 @@ VectorPicture drawGuidance(const GuidanceFigure& figure)
     panels.push_back(panel(i, figure.window_middle_px, figure.window_px));
   }
   const int rows = static_cast<int>((panels.size() + 1) / 2);
-  cv::Mat page(kGap_px + rows * (kPanel_px + kCaption_px + kGap_px), 2 * kPanel_px + 3 * kGap_px, CV_8UC3, kPage);
+  cv::Mat page(kGap_px + rows * (kPanel_px + kCaption_px + kGap_px), 2 * kPanel_px + 3 * kGap_px, CV_8UC3,
+               kGuidancePage);
   for (const Panel& each : panels) paintRetina(figure, each, page);
   VectorPicture picture(page);
   for (std::size_t i = 0; i < panels.size(); ++i) {

@@ -8,6 +8,9 @@
 
 namespace eyeslam::files {
 
+/// No map reaches so far: a file that names a place farther out is wrong.
+inline constexpr double kFarthest_px = 1e6;
+
 /// A JSON object of a file, read field by field: whatever is wrong names the file and the field ("targets[3].x_px").
 /// Each function throws FileError.
 class JsonFields {

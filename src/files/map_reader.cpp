@@ -22,14 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kFarthest_px = 1e6;
-constexpr std::uint8_t kVessel = 128;  // contracts, section 3
-
-std::string textOf(const std::string& path)
-{
-  const auto bytes = readWholeFile(path);
-  return {bytes.begin(), bytes.end()};
-}
+constexpr std::uint8_t kLeastVessel = 128;  // contracts, section 3
 
 cv::Mat pictureOf(const std::string& path, int type)
 {
@@ -45,7 +38,7 @@ cv::Mat pictureOf(const std::string& path, int type)
 /// A picture's place, and um_per_px or 0.
 std::pair<PictureGeometry, double> geometryOf(const std::string& path)
 {
-  const JsonFields json = JsonFields::parse(textOf(path), path);
+  const JsonFields json = JsonFields::parse(readWholeText(path), path);
   json.allowOnly({"origin_x", "origin_y", "px_per_cell", "um_per_px"});
   const PictureGeometry geometry{json.number("origin_x", -kFarthest_px, kFarthest_px),
                                  json.number("origin_y", -kFarthest_px, kFarthest_px),
@@ -91,7 +84,7 @@ std::vector<std::uint8_t> cellsOf(const cv::Mat& picture)
 // Twice the distance from the middle of a cell to the vessel's edge.
 void fillCalibre(retina::VesselMap& map)
 {
-  const cv::Mat vessels = cv::Mat(map.height, map.width, CV_8UC1, map.probability.data()) >= kVessel;
+  const cv::Mat vessels = cv::Mat(map.height, map.width, CV_8UC1, map.probability.data()) >= kLeastVessel;
   map.calibre_px.assign(map.probability.size(), 0);
   if (cv::countNonZero(vessels) == 0) return;
   cv::Mat_<float> distance;
@@ -110,13 +103,13 @@ class VesselsReader {
 
   void read()
   {
-    const std::string text = textOf(path_);
+    const std::string text = readWholeText(path_);
     std::string_view rest = text;
     if (nextLine(rest) != "x_px,y_px,probability,calibre_px") fail("has another head than eyeslam-track writes");
     map_.calibre_px.assign(map_.probability.size(), 0);
     while (!rest.empty()) readLine(nextLine(rest));
     const auto vessels = std::count_if(map_.probability.begin(), map_.probability.end(),
-                                       [](std::uint8_t probability) { return probability >= kVessel; });
+                                       [](std::uint8_t probability) { return probability >= kLeastVessel; });
     if (vessels != row_)
       fail(fmt::format("has {} rows, the map {} vessel cells: it speaks of another map", row_, vessels));
   }
@@ -150,8 +143,8 @@ class VesselsReader {
     const double x_px = numberIn(line), y_px = numberIn(line), probability = numberIn(line);
     const double calibre_px = numberIn(line);
     const double column = (x_px - map_.origin_x) / map_.px_per_cell, row = (y_px - map_.origin_y) / map_.px_per_cell;
-    constexpr double kWritten = 0.01;  // cells: three decimals of a px
-    const bool on_cell = std::abs(column - std::round(column)) < kWritten && std::abs(row - std::round(row)) < kWritten;
+    constexpr double kRounded = 0.01;  // cells: three decimals of a px
+    const bool on_cell = std::abs(column - std::round(column)) < kRounded && std::abs(row - std::round(row)) < kRounded;
     if (!on_cell || column < -0.5 || row < -0.5 || column > map_.width - 0.5 || row > map_.height - 0.5) {
       fail(fmt::format("row {}: x_px, y_px is no cell of the map: it speaks of another map", row_));
     }
@@ -173,7 +166,7 @@ std::string trackOf(const std::string& folder)
   const std::string path = (fs::path(folder) / "run.json").string();
   std::error_code error;
   if (!fs::exists(path, error)) return {};
-  const JsonFields input = JsonFields::parse(textOf(path), path).object("input");
+  const JsonFields input = JsonFields::parse(readWholeText(path), path).object("input");
   if (input.isNull("sha256")) return {};  // a camera
   std::string hash = input.text("sha256");
   if (hash.size() == 64 && hash.find_first_not_of("0123456789abcdef") == std::string::npos) return hash;

@@ -6,20 +6,14 @@
 #include <stdexcept>
 #include <string>
 
+#include "eyeslam/files/distance_picture.h"
 #include "eyeslam/files/thinning.h"
+#include "eyeslam/retina/units.h"
 
 namespace eyeslam::files {
 namespace {
 
 constexpr int kEvery = 3;  // views are counted in every third frame
-
-/// Distance of each px to the nearest non-zero one; everywhere far when there is none.
-cv::Mat_<float> distanceTo(const cv::Mat_<std::uint8_t>& marked)
-{
-  cv::Mat_<float> distance(marked.size(), 1e9F);
-  if (cv::countNonZero(marked) > 0) cv::distanceTransform(marked == 0, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-  return distance;
-}
 
 /// Where a frame shows retina: the disc of light without its soft edge, or the frame without a margin of 8 px.
 cv::Mat_<std::uint8_t> fieldOfView(const Truth& truth)
@@ -39,7 +33,7 @@ cv::Mat_<std::uint8_t> fieldOfView(const Truth& truth)
 cv::Matx23d intoPicture(const Truth& truth, const TruthPose& pose)
 {
   const double cx = (truth.size.width - 1) / 2.0, cy = (truth.size.height - 1) / 2.0;
-  const double theta = pose.theta_deg * CV_PI / 180.0;
+  const double theta = pose.theta_deg * kPi / 180.0;
   const double c = pose.scale * std::cos(theta), s = pose.scale * std::sin(theta);
   return {c, -s, cx + pose.x_px - (c * cx - s * cy) - truth.vessels_origin.x,
           s, c,  cy + pose.y_px - (s * cx + c * cy) - truth.vessels_origin.y};

@@ -14,6 +14,7 @@
 
 #include "eyeslam/fixtures/burn_order.h"
 #include "eyeslam/retina/reason.h"
+#include "eyeslam/retina/units.h"
 
 namespace eyeslam::files {
 namespace {
@@ -23,19 +24,18 @@ using fixtures::BurnTarget;
 using fixtures::validTargets;
 
 constexpr double kWidth_px = 1500.0;  // of the figure
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kLegend_px = 96;
 constexpr double kWord_px = 17.0;      // height of a capital
 constexpr double kLeastBurn_px = 3.0;  // diameter that can still be seen
 const cv::Scalar kRetina(92, 118, 168), kVessel(46, 40, 112), kUnseen(104, 104, 104);
-const cv::Scalar kWhite(255, 255, 255), kBlack(0, 0, 0), kPaper(255, 255, 255), kWords(40, 36, 32);
+const cv::Scalar kBlack(0, 0, 0), kPaper(255, 255, 255), kWords(40, 36, 32);
 const cv::Scalar kZone(60, 220, 250), kWay(230, 200, 60), kTile(250, 235, 200);
 
 std::vector<cv::Point2d> circle(cv::Point2d centre, double radius_px, int corners = 72)
 {
   std::vector<cv::Point2d> points;
   for (int i = 0; i <= corners; ++i) {
-    const double angle = 2.0 * kPi * i / corners;
+    const double angle = kTwoPi * i / corners;
     points.push_back(centre + radius_px * cv::Point2d(std::cos(angle), std::sin(angle)));
   }
   return points;

@@ -21,8 +21,7 @@ using fixtures::BurnPrescription;
 using fixtures::BurnTarget;
 using retina::Reason;
 
-constexpr int kVersion = 1;
-constexpr double kFarthest_px = 1e6;
+constexpr int kPlanVersion = 1;
 constexpr double kMost_um = 1e6;
 constexpr double kMost_um_per_px = 50.0;
 constexpr int kMostTargets = 1000000;
@@ -142,7 +141,7 @@ std::string planJson(const BurnPlan& plan)
 {
   BurnPrescription prescription = plan.prescription;
   nlohmann::ordered_json json;
-  json["version"] = kVersion;
+  json["version"] = kPlanVersion;
   json["um_per_px"] = plan.um_per_px;
   json["margin_um"] = prescription.safety.margin_um;
   json["localization_um"] = prescription.safety.localization_um;
@@ -161,7 +160,8 @@ BurnPlan planFrom(const std::string& text, const std::string& path)
 {
   const JsonFields json = JsonFields::parse(text, path);
   if (!json.has("version") || !json.has("targets")) throw FileError(path + ": is no plan of eyeslam-plan");
-  if (json.whole("version", 0, 1000000) != kVersion) json.fail("version", fmt::format("{} is wanted", kVersion));
+  if (json.whole("version", 0, 1000000) != kPlanVersion)
+    json.fail("version", fmt::format("{} is wanted", kPlanVersion));
   json.allowOnly({"version", "um_per_px", "margin_um", "localization_um", "map", "prescription", "targets"});
   BurnPlan plan;
   plan.um_per_px = json.number("um_per_px", 1e-3, kMost_um_per_px);
@@ -178,11 +178,7 @@ BurnPlan planFrom(const std::string& text, const std::string& path)
   return plan;
 }
 
-BurnPlan readPlan(const std::string& path)
-{
-  const auto bytes = readWholeFile(path);
-  return planFrom({bytes.begin(), bytes.end()}, path);
-}
+BurnPlan readPlan(const std::string& path) { return planFrom(readWholeText(path), path); }
 
 void writePlan(const BurnPlan& plan, const std::string& path)
 {

@@ -17,12 +17,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string textOf(const std::string& path)
-{
-  const auto bytes = readWholeFile(path);
-  return {bytes.begin(), bytes.end()};
-}
-
 std::vector<std::string> fieldsOf(const std::string& line)
 {
   std::vector<std::string> fields;
@@ -39,7 +33,7 @@ class NumberTable {
  public:
   explicit NumberTable(const std::string& path) : path_(path)
   {
-    std::istringstream stream(textOf(path));
+    std::istringstream stream(readWholeText(path));
     std::string line;
     std::getline(stream, line);
     const auto names = fieldsOf(line);
@@ -110,7 +104,7 @@ void readTools(const std::string& path, Truth& truth)
 void readMeta(const std::string& path, TestSequence& sequence)
 {
   try {
-    const Json meta = Json::parse(textOf(path));
+    const Json meta = Json::parse(readWholeText(path));
     Truth& truth = sequence.truth;
     truth.size = {meta.at("size").at(0).get<int>(), meta.at("size").at(1).get<int>()};
     truth.fps = meta.at("fps").get<double>();

@@ -8,11 +8,10 @@
 #include <cstring>
 
 #include "eyeslam/files/file_error.h"
+#include "eyeslam/retina/units.h"
 
 namespace eyeslam::files {
 namespace {
-
-constexpr double kDegreesPerRadian = 180.0 / M_PI;
 
 double deviation(double variance) { return std::sqrt(std::max(variance, 0.0)); }
 

@@ -17,7 +17,7 @@ namespace eyeslam::files {
 namespace {
 
 const cv::Size kFigure(1600, 1000);
-const cv::Scalar kPaper(255, 255, 255), kInk(50, 46, 42), kTrue(176, 172, 168), kEstimate(190, 90, 20);
+const cv::Scalar kPage(255, 255, 255), kTruthInk(50, 46, 42), kTrue(176, 172, 168), kEstimate(190, 90, 20);
 const cv::Scalar kError(60, 60, 205), kAll(150, 110, 30), kWide(190, 150, 60), kWidest(215, 190, 130),
     kFalse(60, 60, 205);
 constexpr int kHead = 56;         // px of the headline
@@ -29,8 +29,8 @@ const std::vector<double> kPaperFalse_s = {5.0}, kPaperFalse = {10.0};
 
 cv::Mat blank(const std::string& headline)
 {
-  cv::Mat figure(kFigure, CV_8UC3, kPaper);
-  writeText(figure, headline, {30, 36}, 0.7, kInk);
+  cv::Mat figure(kFigure, CV_8UC3, kPage);
+  writeText(figure, headline, {30, 36}, 0.7, kTruthInk);
   return figure;
 }
 
@@ -156,7 +156,7 @@ void drawMap(cv::Mat& figure, cv::Rect area, const Truth& truth, const JudgedMap
   writeText(figure,
             fmt::format("{:.2f} s: {:.0f} % covered, {:.0f} % false", t_s, 100.0 * map.score.coverage,
                         100.0 * map.score.false_positive),
-            {place.x, area.y + 20}, 0.5, kInk);
+            {place.x, area.y + 20}, 0.5, kTruthInk);
 }
 
 /// The first that shows anything (frame 0's map is empty), the last, and between them evenly by their number.
@@ -178,7 +178,7 @@ void writeKey(cv::Mat& figure, int y)
   int x = 66;
   for (const auto& [name, colour] : entries) {
     cv::rectangle(figure, cv::Rect(x, y - 12, 16, 14), colour, cv::FILLED);
-    writeText(figure, name, {x + 24, y}, 0.5, kInk);
+    writeText(figure, name, {x + 24, y}, 0.5, kTruthInk);
     x += 60 + textWidth(name, 0.5);
   }
 }
@@ -190,7 +190,7 @@ cv::Mat poseFigure(const std::string& name, const Truth& truth, const std::vecto
   const PoseScore score = scorePoses(truth.poses, estimate);
   cv::Mat figure = blank(fmt::format("{}: RMS {:.3f} px, {:.4f} deg; {:.1f} % of {} visible frames under 5 px", name,
                                      score.rms_px, score.rms_deg, 100.0 * score.under_5_px, score.visible));
-  if (score.visible < score.frames) writeText(figure, "shaded: retina hidden", {1380, 36}, 0.5, kInk);
+  if (score.visible < score.frames) writeText(figure, "shaded: retina hidden", {1380, 36}, 0.5, kTruthInk);
   for (int row = 0; row < 3; ++row) drawComponent(figure, row, truth, estimate);
   return figure;
 }

@@ -10,12 +10,15 @@
 #include <utility>
 
 #include "eyeslam/files/markup.h"
+#include "eyeslam/retina/units.h"
+#include "eyeslam/tracking/sub_pixel.h"
 
 namespace eyeslam::files {
 
 namespace {
 
-constexpr int kShift = 4;             // OpenCV draws at sixteenths of a pixel
+using tracking::kSubPixelBits;
+
 constexpr double kCapital_px = 21.0;  // height of a capital of OpenCV's font at size 1
 constexpr int kCircleCorners = 24;
 constexpr int kJpegQuality = 90;
@@ -28,8 +31,8 @@ std::string hex(const cv::Scalar& bgr)
 cv::Point fixedPoint(const cv::Point2d& point, double scale)
 {
   // The background's pixel centres keep their places when it grows about its corner.
-  const double unit = scale * (1 << kShift);
-  const double half = 0.5 * (scale - 1.0) * (1 << kShift);
+  const double unit = scale * (1 << kSubPixelBits);
+  const double half = 0.5 * (scale - 1.0) * (1 << kSubPixelBits);
   return {cvRound(point.x * unit + half), cvRound(point.y * unit + half)};
 }
 
@@ -61,7 +64,7 @@ void VectorPicture::disc(cv::Point2d centre, double radius_px, const Ink& ink)
   std::vector<cv::Point2d> corners;
   corners.reserve(kCircleCorners + 1);
   for (int i = 0; i <= kCircleCorners; ++i) {
-    const double angle = 2.0 * CV_PI * i / kCircleCorners;
+    const double angle = kTwoPi * i / kCircleCorners;
     corners.push_back(centre + radius_px * cv::Point2d(std::cos(angle), std::sin(angle)));
   }
   line(std::move(corners), ink);
@@ -133,8 +136,8 @@ void VectorPicture::draw(const Line& line, double scale, cv::Mat& picture)
   const int width = std::max(1, cvRound(line.ink.width_px * scale));
   cv::Rect touched = cv::boundingRect(points);
   const int margin = width + 2;
-  touched = {(touched.x >> kShift) - margin, (touched.y >> kShift) - margin, (touched.width >> kShift) + 2 * margin,
-             (touched.height >> kShift) + 2 * margin};
+  touched = {(touched.x >> kSubPixelBits) - margin, (touched.y >> kSubPixelBits) - margin,
+             (touched.width >> kSubPixelBits) + 2 * margin, (touched.height >> kSubPixelBits) + 2 * margin};
   cv::Rect shown({}, picture.size());
   if (!line.clip.empty()) {
     shown &= cv::Rect(cvRound(line.clip.x * scale), cvRound(line.clip.y * scale), cvRound(line.clip.width * scale),
@@ -142,14 +145,14 @@ void VectorPicture::draw(const Line& line, double scale, cv::Mat& picture)
   }
   touched &= shown;
   if (touched.empty()) return;
-  for (cv::Point& point : points) point -= cv::Point(touched.x << kShift, touched.y << kShift);
+  for (cv::Point& point : points) point -= cv::Point(touched.x << kSubPixelBits, touched.y << kSubPixelBits);
   cv::Mat below = picture(touched);
   cv::Mat drawn = below.clone();
   if (line.filled) {
-    cv::fillPoly(drawn, std::vector<std::vector<cv::Point>>{points}, line.ink.colour, cv::LINE_AA, kShift);
+    cv::fillPoly(drawn, std::vector<std::vector<cv::Point>>{points}, line.ink.colour, cv::LINE_AA, kSubPixelBits);
   } else {
     cv::polylines(drawn, std::vector<std::vector<cv::Point>>{points}, false, line.ink.colour, width, cv::LINE_AA,
-                  kShift);
+                  kSubPixelBits);
   }
   cv::addWeighted(drawn, line.ink.opacity, below, 1.0 - line.ink.opacity, 0.0, below);
 }

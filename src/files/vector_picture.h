@@ -8,9 +8,11 @@
 
 namespace eyeslam::files {
 
+inline const cv::Scalar kWhite{255, 255, 255};
+
 /// How something is drawn. `colour` is BGR, 0 to 255.
 struct Ink {
-  cv::Scalar colour{255, 255, 255};
+  cv::Scalar colour = kWhite;
   double width_px = 1.0;
   double opacity = 1.0;
 };

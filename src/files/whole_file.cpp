@@ -55,6 +55,12 @@ std::vector<std::uint8_t> readWholeFile(const std::string& path)
   return bytes;
 }
 
+std::string readWholeText(const std::string& path)
+{
+  const auto bytes = readWholeFile(path);
+  return {bytes.begin(), bytes.end()};
+}
+
 void writeWholeFile(const std::string& path, const void* bytes, std::size_t size)
 {
   File file(std::fopen(path.c_str(), "wb"));

@@ -9,6 +9,7 @@ namespace eyeslam::files {
 
 /// All bytes of a file. @throws FileError naming it
 std::vector<std::uint8_t> readWholeFile(const std::string& path);
+std::string readWholeText(const std::string& path);
 
 /// Writes a file from its first to its last byte, and makes sure that they arrived. Not atomic: for what is renamed
 /// into place afterwards (OutputFolder).

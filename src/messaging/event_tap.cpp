@@ -8,14 +8,14 @@ namespace eyeslam::messaging {
 
 namespace {
 
-constexpr int kQueueCapacity = 10'000;  // far more than a link has between two drains of lock step
+constexpr int kTapCapacity = 10'000;  // far more than a link has between two drains of lock step
 
 }  // namespace
 
 EventTap::EventTap(Link& link, Each each)
     : link_(link), each_(std::move(each)), subscription_(link.lcm().subscribe(".*", &EventTap::onMessage, this))
 {
-  subscription_->setQueueCapacity(kQueueCapacity);
+  subscription_->setQueueCapacity(kTapCapacity);
 }
 
 EventTap::~EventTap() { link_.lcm().unsubscribe(subscription_); }

@@ -8,6 +8,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "eyeslam/retina/units.h"
+#include "eyeslam/tracking/sub_pixel.h"
 #include "eyeslam/tracking/view_geometry.h"
 
 namespace eyeslam::replay {
@@ -18,32 +20,32 @@ const cv::Scalar kVessel(235, 235, 110), kSight(255, 200, 60), kTip(255, 255, 25
 const cv::Scalar kGoal(255, 90, 255), kSpot(110, 255, 110), kWish(80, 220, 255), kZone(80, 80, 235);
 const cv::Scalar kPending(80, 220, 255), kDone(250, 250, 250), kMissed(70, 70, 255), kRefused(150, 150, 150);
 const cv::Scalar kGood(120, 220, 120), kBad(90, 90, 255);
-constexpr int kFixed = 4;            // bits of sub-pixel coordinates in OpenCV's drawing
 constexpr int kLine = 24, kRim = 8;  // px of a line of text, and around all of them
 constexpr int kSmall = 640;          // px: a frame less wide is enlarged
 constexpr int kThreshold = 128;      // of a vessel (contracts, section 3)
 constexpr double kFont = 0.45;
 
-cv::Point fixed(cv::Point2d at) { return {cvRound(at.x * (1 << kFixed)), cvRound(at.y * (1 << kFixed))}; }
-
 bool isNear(cv::Point2d at) { return std::abs(at.x) < 1e4 && std::abs(at.y) < 1e4; }
 
 void line(cv::Mat& picture, cv::Point2d from, cv::Point2d to, const cv::Scalar& colour, int thickness = 1)
 {
-  if (isNear(from) && isNear(to)) cv::line(picture, fixed(from), fixed(to), colour, thickness, cv::LINE_AA, kFixed);
+  if (isNear(from) && isNear(to))
+    cv::line(picture, tracking::inSubPixels(from), tracking::inSubPixels(to), colour, thickness, cv::LINE_AA,
+             tracking::kSubPixelBits);
 }
 
 void ring(cv::Mat& picture, cv::Point2d centre, double radius, const cv::Scalar& colour, int thickness = 1)
 {
   if (!isNear(centre) || !(radius < 1e4)) return;
-  cv::circle(picture, fixed(centre), cvRound(radius * (1 << kFixed)), colour, thickness, cv::LINE_AA, kFixed);
+  cv::circle(picture, tracking::inSubPixels(centre), cvRound(radius * (1 << tracking::kSubPixelBits)), colour,
+             thickness, cv::LINE_AA, tracking::kSubPixelBits);
 }
 
 // Arms that leave the middle free.
 void cross(cv::Mat& picture, cv::Point2d at, double from, double to, const cv::Scalar& colour, double turn = 0.0)
 {
   for (int arm = 0; arm < 4; ++arm) {
-    const double angle = turn + arm * CV_PI / 2.0;
+    const double angle = turn + arm * kPi / 2.0;
     const cv::Point2d along(std::cos(angle), std::sin(angle));
     line(picture, at + from * along, at + to * along, colour, 2);
   }
@@ -158,7 +160,7 @@ void ScenePicture::drawTarget(const burn_target_t& target, cv::Point2d at, doubl
       return ring(view_, at, 1.5, kDone, -1);
     case burn_target_t::MISSED:
       ring(view_, at, radius, kMissed);
-      return cross(view_, at, 0.0, radius, kMissed, CV_PI / 4.0);
+      return cross(view_, at, 0.0, radius, kMissed, kPi / 4.0);
     default:
       return ring(view_, at, 0.5 * radius, kRefused);
   }
@@ -212,8 +214,7 @@ void ScenePicture::drawManipulator(const LoggedScene& scene)
   const cv::Point2d tip = onCanvas(projected(registration, state->tip.position));
   line(view_, hand, tip, kHand);
   ring(view_, hand, 4.0, kHand, 2);
-  if (state->follows_command)
-    cross(view_, onCanvas(projected(registration, state->goal)), 2.0, 9.0, kGoal, CV_PI / 4.0);
+  if (state->follows_command) cross(view_, onCanvas(projected(registration, state->goal)), 2.0, 9.0, kGoal, kPi / 4.0);
   ring(view_, tip, 2.0, kTip, -1);
 }
 
@@ -234,7 +235,7 @@ void ScenePicture::writeState(std::int64_t number, double time_s, const LoggedSc
     write("no pose in the log", x, 0, kBad);
   } else if (const messaging::RetinaMotion& motion = scene.pose()->motion; motion.tracked) {
     write(fmt::format("tracked   x {:+.1f}  y {:+.1f} px   turn {:+.2f} deg", motion.map_T_frame.x,
-                      motion.map_T_frame.y, motion.map_T_frame.theta * 180.0 / CV_PI),
+                      motion.map_T_frame.y, motion.map_T_frame.theta * 180.0 / kPi),
           x, 0, kGood);
   } else {
     write(fmt::format("lost: {}", retina::word(motion.reason)), x, 0, kBad);

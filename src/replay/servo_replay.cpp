@@ -21,7 +21,7 @@ constexpr const char* kCompared[] = {"MICRON_COMMAND", "LASER_COMMAND", "SERVO_S
 
 bool isMark(std::string_view channel) { return channel == "MARK"; }
 
-servo::ServoConfiguration liveConfiguration(const std::string& yaml)
+servo::ServoConfiguration liveServoConfiguration(const std::string& yaml)
 {
   return configuration::applied(servo::ServoConfiguration{}, configuration::parseYaml(kServo, yaml));
 }
@@ -77,9 +77,9 @@ void ServoReplay::beginTrial(const mark_t& mark, std::int64_t utime)
 // From when it was logged on: its sender may be of a computer with another clock.
 void ServoReplay::beginLive(const mark_t& mark, std::int64_t utime)
 {
-  timeline_ =
-      std::make_unique<LiveTimeline>(configuration::applied(recordedConfiguration(mark, liveConfiguration), changes_),
-                                     mark.session, utime, comparison_, goals_);
+  timeline_ = std::make_unique<LiveTimeline>(
+      configuration::applied(recordedConfiguration(mark, liveServoConfiguration), changes_), mark.session, utime,
+      comparison_, goals_);
   start_ = mark;
   live_ = true;
   about_ = fmt::format("servo of {} {}, which ran in real time", mark.sender, mark.version);

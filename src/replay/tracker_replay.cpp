@@ -15,7 +15,8 @@
 namespace eyeslam::replay {
 namespace {
 
-constexpr std::string_view kPose = "RETINA_POSE", kTip = "TOOL_TIP", kMap = "VESSEL_MAP", kScale = "REGISTRATION";
+constexpr std::string_view kPoseChannel = "RETINA_POSE", kTipChannel = "TOOL_TIP", kMapChannel = "VESSEL_MAP",
+                           kScaleChannel = "REGISTRATION";
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t kPatience_us = 2'000'000;  // for the next frame: latency and period are a second together
 constexpr std::size_t kMostComputed = 4096;       // messages without a recorded one, a channel
@@ -24,7 +25,10 @@ constexpr std::int64_t kMostLost = 10'000;        // frames: more is no gap, but
 constexpr double kLongestExposure_s = 1.0;
 constexpr std::size_t kTimeSentAt = 16, kTimeBytes = 8, kTagBytes = 16;  // in a message (contracts, section 4)
 
-bool isVision(std::string_view channel) { return channel == kPose || channel == kTip || channel == kMap; }
+bool isVision(std::string_view channel)
+{
+  return channel == kPoseChannel || channel == kTipChannel || channel == kMapChannel;
+}
 
 /// Half a microsecond and the rounding of two stamps less: an exposure that ends with a millisecond is over in it.
 std::int64_t endOf(const messaging::FrameStamp& stamp) { return stamp.utime + std::llround(5e5 * stamp.exposure) - 1; }
@@ -65,7 +69,7 @@ TrackerReplay::TrackerReplay(const TrackerReplayOptions& options, SideVideo& vid
       each_(std::move(each)),
       period_us_(std::llround(1e6 / options.frame_rate))
 {
-  for (const std::string_view channel : {kPose, kTip, kMap}) channels_.emplace(channel, Channel());
+  for (const std::string_view channel : {kPoseChannel, kTipChannel, kMapChannel}) channels_.emplace(channel, Channel());
 }
 
 TrackerReplay::~TrackerReplay() = default;
@@ -79,14 +83,14 @@ SortedEvent TrackerReplay::Held::event() const
 
 void TrackerReplay::take(const SortedEvent& event)
 {
-  const bool vision = isVision(event.event.channel), scale = event.event.channel == kScale;
+  const bool vision = isVision(event.event.channel), scale = event.event.channel == kScaleChannel;
   if (vision || scale || each_) {
     Held held(event);
     if ((vision || scale) && judgeToday(event.event).standing == Standing::ours) {
       held.header = headerOf(event.event);
-      if (vision && session_ == 0 && held.message.channel == kPose) begin(held.header.session);
+      if (vision && session_ == 0 && held.message.channel == kPoseChannel) begin(held.header.session);
       held.vision = vision && held.header.session == session_;
-      if (vision && !held.vision && held.message.channel == kPose) ++findings_.other_runs;
+      if (vision && !held.vision && held.message.channel == kPoseChannel) ++findings_.other_runs;
     }
     if (held.vision) expectFrame(held);
     held_.push_back(std::move(held));
@@ -116,10 +120,11 @@ void TrackerReplay::begin(std::int64_t session)
 void TrackerReplay::expectFrame(const Held& held)
 {
   last_sent_ = std::max(last_sent_, held.header.utime_sent);
-  if (held.message.channel == kMap || held.header.seq < next_number_ || held.header.seq - next_number_ > kMostLost)
+  if (held.message.channel == kMapChannel || held.header.seq < next_number_ ||
+      held.header.seq - next_number_ > kMostLost)
     return;
-  const auto stamp = held.message.channel == kPose ? stampIn<retina_pose_t>(held.message.bytes)
-                                                   : stampIn<tool_tip_t>(held.message.bytes);
+  const auto stamp = held.message.channel == kPoseChannel ? stampIn<retina_pose_t>(held.message.bytes)
+                                                          : stampIn<tool_tip_t>(held.message.bytes);
   if (stamp) expect(held.header.seq, *stamp, held.header.utime_sent);
 }
 
@@ -173,13 +178,15 @@ bool TrackerReplay::mayProcess(const Held& held, std::int64_t newest) const
 void TrackerReplay::process(const Held& held)
 {
   place_us_ = held.sorted.since_us;
-  if (engine_ && held.message.channel == kScale && held.header.session != 0) {
-    engine_->link.send(held.message.channel, held.message.bytes.data(), held.message.bytes.size());
-    drain(held.header.utime_sent);
+  if (engine_ && held.message.channel == kScaleChannel && held.header.session != 0) {
+    hearScale();
+    scale_ = held;
+    if (options_.order == TrackerOrder::lock_step) hearScale();
   }
   if (held.vision) {
+    if (scale_ && hasHeardScale(held)) hearScale();
     lookUntil(held);
-    if (engine_->lock_step && held.message.channel == kPose) engine_->lock_step->send(held.header.utime_sent);
+    if (engine_->lock_step && held.message.channel == kPoseChannel) engine_->lock_step->send(held.header.utime_sent);
     drain(held.header.utime_sent);
     compare(held);
   } else if (each_) {
@@ -187,10 +194,32 @@ void TrackerReplay::process(const Held& held)
   }
 }
 
+void TrackerReplay::hearScale()
+{
+  if (!scale_) return;
+  engine_->link.send(scale_->message.channel, scale_->message.bytes.data(), scale_->message.bytes.size());
+  drain(scale_->header.utime_sent);
+  scale_.reset();
+}
+
+// A log has the order in which messages were sent. When a live tracker came to read one only its next poses tell; on a
+// computer with other work that may be a frame later.
+bool TrackerReplay::hasHeardScale(const Held& held) const
+{
+  if (held.header.utime_sent > scale_->header.utime_sent + kPatience_us) return true;
+  retina_pose_t pose{};
+  registration_t scale{};
+  const auto decoded = [](const Held& from, auto& message) {
+    return messaging::decode(from.message.bytes.data(), from.message.bytes.size(), message);
+  };
+  return held.message.channel == kPoseChannel && decoded(held, pose) && decoded(*scale_, scale) &&
+         pose.um_per_px == scale.um_per_px;
+}
+
 void TrackerReplay::lookUntil(const Held& held)
 {
   const bool live = options_.order == TrackerOrder::live;
-  if (live && held.message.channel == kMap) return;
+  if (live && held.message.channel == kMapChannel) return;
   const auto isDue = [&](const Look& due) {
     return live ? due.number <= held.header.seq : due.over <= held.header.utime_sent;
   };

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -102,6 +103,8 @@ class TrackerReplay {
   void expectFramesAfterTheLast();
   bool mayProcess(const Held& held, std::int64_t newest) const;
   void process(const Held& held);
+  void hearScale();
+  bool hasHeardScale(const Held& held) const;
   void lookUntil(const Held& held);
   void look(const Look& due);
   void lookLive(const Look& due, const cv::Mat& image);
@@ -117,6 +120,7 @@ class TrackerReplay {
   std::unique_ptr<Engine> engine_;  // from the first pose on
   std::deque<Held> held_;
   std::deque<Look> looks_;
+  std::optional<Held> scale_;  // a registration that the tracker has not read yet
   std::map<std::string, Channel, std::less<>> channels_;
   std::int64_t session_ = 0, next_number_ = 0;
   messaging::FrameStamp last_;  // stamp of the newest known frame

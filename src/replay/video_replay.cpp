@@ -26,7 +26,7 @@ double rateOf(const SideVideo& video, const std::string& path)
   throw ReplayError(fmt::format("{}: says no frame rate; a video of a constant one is wanted", path));
 }
 
-tracking::TrackerOptions liveConfiguration(const std::string& yaml)
+tracking::TrackerOptions liveTrackerConfiguration(const std::string& yaml)
 {
   std::vector<configuration::Assignment> recorded;
   for (const configuration::Assignment& one : configuration::parseYaml(kTracker, yaml))
@@ -76,7 +76,7 @@ void VideoReplay::takeMark(const SortedEvent& event)
   judgeToday(event.event);
   if (replay_ || !messaging::decode(event.event.data, event.event.size, mark) || mark.kind != mark_t::START) return;
   if (mark.sender == kTracker) {
-    begin(configuration::applied(recordedConfiguration(mark, liveConfiguration), options_.changes),
+    begin(configuration::applied(recordedConfiguration(mark, liveTrackerConfiguration), options_.changes),
           video_.framesPerSecond(), TrackerOrder::live, mark);
   } else if (const auto trial = recordedTrial(mark, options_.changes); trial && !trial->setting.scenario.isManual()) {
     begin(trial->setting.vision.tracker, trial->setting.hardware.camera.fps, TrackerOrder::lock_step, mark);

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::retina {
 
 Eigen::Matrix2d Pose2::linear() const
@@ -31,8 +33,8 @@ Pose2 Pose2::inverse() const
 
 double wrapAngle(double theta)
 {
-  const double wrapped = std::remainder(theta, 2.0 * M_PI);
-  return wrapped <= -M_PI ? M_PI : wrapped;
+  const double wrapped = std::remainder(theta, kTwoPi);
+  return wrapped <= -kPi ? kPi : wrapped;
 }
 
 }  // namespace eyeslam::retina

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "eyeslam/retina/units.h"
 #include "eyeslam/robot/tool_jacobian.h"
 #include "eyeslam/robot/visp_conversion.h"
 
@@ -22,7 +23,6 @@ using retina::Reason;
 
 namespace {
 
-constexpr double kMilli = 1e-3;
 constexpr double kSlowest = 1e-3;         // m/s, a bound below would not let the tip reach its goal
 constexpr double kSpare = 1.25;           // of the speed, so that the tip keeps up with its goal
 constexpr double kLongestStep_s = 50e-3;  // a pause counts as no more

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "eyeslam/retina/units.h"
 #include "eyeslam/robot/tool_jacobian.h"
 #include "eyeslam/robot/visp_conversion.h"
 
@@ -13,10 +14,6 @@ namespace eyeslam::robot {
 using retina::Reason;
 
 namespace {
-
-constexpr double kPerMillimetre = 1e3;
-constexpr double kMicro = 1e-6;
-constexpr double kMilli = 1e-3;
 
 bool isFirst(const std::string& word, const char* first, const char* second)
 {
@@ -82,7 +79,7 @@ Eigen::Matrix<double, 3, 6> VisualServo::pointMotion(const Eigen::Isometry3d& fM
     const Eigen::Vector3d beam = fMe.linear().col(2);
     carried -= beam * (plane_.normal.transpose() * carried) / plane_.normal.dot(beam);
   }
-  return kPerMillimetre * carried;
+  return kPerMilli * carried;
 }
 
 Reason VisualServo::look(const Eigen::Isometry3d& fMe, Sight& sight) const
@@ -98,26 +95,26 @@ Reason VisualServo::look(const Eigen::Isometry3d& fMe, Sight& sight) const
     const Eigen::Matrix<double, 2, 3> camera = mm_per_px_ * registration_.image_T_base.leftCols<3>();
     sight.current.head<2>() = mm_per_px_ * *seen_px_;
     sight.desired.head<2>() = mm_per_px_ * *target_px_;
-    sight.motion.topRows<2>() = camera * motion / kPerMillimetre;
+    sight.motion.topRows<2>() = camera * motion / kPerMilli;
   } else if (of_spot_) {
     // The plane's own directions: the spot cannot leave it.
     Eigen::Matrix<double, 2, 3> along;
     along.row(0) = plane_.normal.unitOrthogonal().transpose();
     along.row(1) = plane_.normal.cross(plane_.normal.unitOrthogonal()).transpose();
-    sight.current.head<2>() = kPerMillimetre * along * *point;
-    sight.desired.head<2>() = kPerMillimetre * along * *goal;
+    sight.current.head<2>() = kPerMilli * along * *point;
+    sight.desired.head<2>() = kPerMilli * along * *goal;
     sight.motion.topRows<2>() = along * motion;
   } else {
-    sight.current = kPerMillimetre * tip;
+    sight.current = kPerMilli * tip;
     // As image-based: over the target along the line of sight, at the height that is wanted.
     const servo::RetinaPlane above{plane_.normal, plane_.distance + standoff, 0.0};
-    sight.desired = kPerMillimetre * registration_.toPlane(*target_px_, above).value_or(*goal);
+    sight.desired = kPerMilli * registration_.toPlane(*target_px_, above).value_or(*goal);
     sight.motion = motion;
     return Reason::none;
   }
-  sight.current.z() = kPerMillimetre * plane_.height(tip);
-  sight.desired.z() = kPerMillimetre * standoff;
-  sight.motion.row(2) << kPerMillimetre * plane_.normal.transpose(), Eigen::RowVector3d::Zero();
+  sight.current.z() = kPerMilli * plane_.height(tip);
+  sight.desired.z() = kPerMilli * standoff;
+  sight.motion.row(2) << kPerMilli * plane_.normal.transpose(), Eigen::RowVector3d::Zero();
   return Reason::none;
 }
 

@@ -15,7 +15,6 @@ namespace {
 constexpr std::size_t kScannedPerCycle = 8;  // targets looked at in one cycle: what was burnt is a long list
 constexpr double kArrived = 20e-6;           // m, of the travelling goal: the dwell begins
 constexpr std::size_t kMean = 5;             // states of the tip
-constexpr double kUnknown = 1e9;             // forbids a pulse
 
 MotionLimiterOptions travelOptions(const BurnRunOptions& options)
 {

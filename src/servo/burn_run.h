@@ -18,6 +18,7 @@
 #include "eyeslam/servo/pulse_watch.h"
 #include "eyeslam/servo/spot_aim.h"
 #include "eyeslam/servo/timed_ring.h"
+#include "eyeslam/servo/unknown.h"
 #include "eyeslam/servo/view_pose.h"
 
 namespace eyeslam::servo {
@@ -31,9 +32,9 @@ struct BurnInput {
   // Who allows it
   bool laser_state = false;                       ///< the supervisor is in Laser
   const messaging::OperatorWish* wish = nullptr;  ///< null before the first
-  double operator_age = 1e9;
+  double operator_age = kUnknown;
   const messaging::LaserState* laser = nullptr;  ///< null before the first
-  double laser_age = 1e9;                        ///< since it was received
+  double laser_age = kUnknown;                   ///< since it was received
 
   // What the picture and the map are worth
   const Preparation* preparation = nullptr;
@@ -42,12 +43,12 @@ struct BurnInput {
   double um_per_px = 0.0;  ///< the registration's own; 0 = unknown
   bool tracked = false;    ///< the newest frame
   std::int64_t pose_utime = 0;
-  double pose_age = 1e9;    ///< since the middle of its exposure
-  double since_pose = 1e9;  ///< since it came
-  double pose_error = 1e9;  ///< m, 95 %, at the tip
-  double innovation = 1e9;  ///< m, of the newest pose
+  double pose_age = kUnknown;    ///< since the middle of its exposure
+  double since_pose = kUnknown;  ///< since it came
+  double pose_error = kUnknown;  ///< m, 95 %, at the tip
+  double innovation = kUnknown;  ///< m, of the newest pose
   double since_jump = 0.0;
-  double retina_speed = 1e9;  ///< m/s
+  double retina_speed = kUnknown;  ///< m/s
 
   // Where the instrument is
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();    ///< measured

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "eyeslam/retina/smoothstep.h"
+#include "eyeslam/retina/units.h"
 
 namespace eyeslam::servo {
 
@@ -13,8 +14,6 @@ using retina::Reason;
 
 namespace {
 
-constexpr double kMilli = 1e-3;
-constexpr double kTurn = 2.0 * M_PI;
 // Hz; the rosette fills the disc: its petals turn by 144 deg from one pass of the middle to the next.
 constexpr double kAcross = 0.5;
 constexpr double kAround = 0.2;
@@ -64,9 +63,9 @@ Eigen::Vector3d CalibrationPattern::at(double time_s, const Eigen::Vector3d& sha
   if (!(across.norm() > 0.5)) return Eigen::Vector3d::Zero();
   const Eigen::Vector3d right = across.normalized();
   const double share = retina::smoothstep(std::min({1.0, time_s / ramp_, (duration_ - time_s) / ramp_}));
-  const double radius = share * lateral_ * std::sin(kTurn * kAcross * time_s);
-  const double angle = kTurn * kAround * time_s;
-  const double back = share * backwards_ * 0.5 * (1.0 - std::cos(kTurn * kAlong * time_s));
+  const double radius = share * lateral_ * std::sin(kTwoPi * kAcross * time_s);
+  const double angle = kTwoPi * kAround * time_s;
+  const double back = share * backwards_ * 0.5 * (1.0 - std::cos(kTwoPi * kAlong * time_s));
   return radius * (std::cos(angle) * right + std::sin(angle) * axis.cross(right)) - back * axis;
 }
 

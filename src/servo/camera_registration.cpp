@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "eyeslam/retina/units.h"
 #include "eyeslam/servo/robust_weights.h"
 
 namespace eyeslam::servo {
@@ -14,7 +15,6 @@ using retina::Reason;
 
 namespace {
 
-constexpr double kPerMillimetre = 1e3;
 constexpr double kDriftShare = 0.05;    // of the newest innovation in the mean: some twenty samples
 constexpr double kClearSight_px = 5.0;  // sigma of a tip that is found along its shaft; trials: 1 px, else 15
 constexpr double kMostDrift = 2.0;      // times the limit, that a single sample counts for
@@ -25,6 +25,14 @@ bool isFinite(const TipSample& sample)
 {
   return sample.tip.allFinite() && sample.image_px.allFinite() && std::isfinite(sample.sigma_px) &&
          sample.sigma_px > 0.0;
+}
+
+// The smaller singular value: of two rows their squares sum to the rows' and their product is the area between them.
+double leastScale(const Eigen::Matrix<double, 2, 3>& rows)
+{
+  const double squares = rows.squaredNorm();
+  const double twice_area = 2.0 * rows.row(0).cross(rows.row(1)).norm();
+  return 0.5 * (std::sqrt(squares + twice_area) - std::sqrt(std::max(0.0, squares - twice_area)));
 }
 
 }  // namespace
@@ -62,7 +70,7 @@ CameraRegistration::CameraRegistration(const CameraRegistrationOptions& options)
 
 CameraRegistration::Row CameraRegistration::regressor(const Eigen::Vector3d& tip) const
 {
-  return ((tip - origin_) * kPerMillimetre).homogeneous();
+  return ((tip - origin_) * kPerMilli).homogeneous();
 }
 
 void CameraRegistration::forget()
@@ -152,7 +160,7 @@ Reason CameraRegistration::add(const TipSample& sample)
 
 bool CameraRegistration::bringsNothing(const Eigen::Vector3d& tip) const
 {
-  const double from_mean = ((tip - origin_) * kPerMillimetre - mean_).norm();
+  const double from_mean = ((tip - origin_) * kPerMilli - mean_).norm();
   return spread_ < 1e-3 * options_.least_spread_um && from_mean < spread_;
 }
 
@@ -196,8 +204,8 @@ void CameraRegistration::expectScale(double um_per_px, const RetinaPlane& plane)
 Eigen::Matrix4d CameraRegistration::toOwn() const
 {
   Eigen::Matrix4d own = Eigen::Matrix4d::Identity();
-  own.topLeftCorner<3, 3>() *= kPerMillimetre;
-  own.topRightCorner<3, 1>() = -kPerMillimetre * origin_;
+  own.topLeftCorner<3, 3>() *= kPerMilli;
+  own.topRightCorner<3, 1>() = -kPerMilli * origin_;
   return own;
 }
 
@@ -243,8 +251,7 @@ void CameraRegistration::solve()
 Reason CameraRegistration::verdict() const
 {
   if (result_.samples < options_.least_samples || !result_.image_T_base.allFinite()) return Reason::not_registered;
-  const Eigen::JacobiSVD<Eigen::Matrix<double, 2, 3>> svd(result_.image_T_base.leftCols<3>());
-  const double px_per_m = svd.singularValues()[1];
+  const double px_per_m = leastScale(result_.image_T_base.leftCols<3>());
   if (!(px_per_m > 0.0)) return Reason::registration_uncertain;
   if (result_.residual_px > options_.worst_residual_px) return Reason::registration_residual;
   constexpr double k95 = 2.4477;  // of a planar normal error

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::servo {
 
 using fixtures::CurveFixture;
@@ -16,8 +18,6 @@ using messaging::WantedFixture;
 using retina::Reason;
 
 namespace {
-
-constexpr double kMicro = 1e-6;
 
 bool same(const WantedFixture& a, const WantedFixture& b)
 {

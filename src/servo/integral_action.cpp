@@ -3,11 +3,12 @@
 
 #include <algorithm>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::servo {
 
 namespace {
 
-constexpr double kMicro = 1e-6;
 constexpr double kLongestStep_s = 5e-3;  // after a longer gap the error says little about the time between
 
 }  // namespace

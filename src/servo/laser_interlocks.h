@@ -3,6 +3,7 @@
 
 #include "eyeslam/retina/options.h"
 #include "eyeslam/retina/reason.h"
+#include "eyeslam/servo/unknown.h"
 
 namespace eyeslam::servo {
 
@@ -64,30 +65,30 @@ struct LaserInterlocksOptions {
 
 /// What a pulse depends on, judged in this very cycle. Everything starts as what forbids it.
 struct PulseConditions {
-  bool laser_state = false;       ///< the supervisor is in Laser
-  bool foot_switch = false;       ///< pressed
-  bool armed_by_human = false;    ///< OPERATOR says so
-  bool armed_laser = false;       ///< the laser's own controls say so
-  bool interlock_closed = false;  ///< the remote interlock
-  bool plan_in_force = false;     ///< approved by hash, unchanged
-  bool target_valid = false;      ///< against the newest map
-  bool target_unburnt = false;    ///< one pulse a target
-  bool registered = false;        ///< the camera is registered well enough
-  bool tracked = false;           ///< the newest frame was localized
-  double laser_age = 1e9;         ///< s since LASER_STATE was received
-  double operator_age = 1e9;      ///< s since OPERATOR was received
-  double pose_age = 1e9;          ///< s since the middle of the newest pose's exposure
-  double pose_error = 1e9;        ///< m, 95 % error of the pose at the target
-  double innovation = 1e9;        ///< m, of the newest pose
-  double since_jump = 0.0;        ///< s
-  double goal_distance = 1e9;     ///< m, tip to goal, mean of 5 ms
-  double settled_for = 0.0;       ///< s with that below the limit
-  double spot_distance = 1e9;     ///< m, aiming spot to target in the newest frame
-  double reach_left = 0.0;        ///< m
-  double speed = 1e9;             ///< m/s, of the tip on the retina
-  double retina_speed = 1e9;      ///< m/s
-  double standoff_error = 1e9;    ///< m
-  double clearance = 0.0;         ///< m, edge of the burn to the nearest vessel
+  bool laser_state = false;          ///< the supervisor is in Laser
+  bool foot_switch = false;          ///< pressed
+  bool armed_by_human = false;       ///< OPERATOR says so
+  bool armed_laser = false;          ///< the laser's own controls say so
+  bool interlock_closed = false;     ///< the remote interlock
+  bool plan_in_force = false;        ///< approved by hash, unchanged
+  bool target_valid = false;         ///< against the newest map
+  bool target_unburnt = false;       ///< one pulse a target
+  bool registered = false;           ///< the camera is registered well enough
+  bool tracked = false;              ///< the newest frame was localized
+  double laser_age = kUnknown;       ///< s since LASER_STATE was received
+  double operator_age = kUnknown;    ///< s since OPERATOR was received
+  double pose_age = kUnknown;        ///< s since the middle of the newest pose's exposure
+  double pose_error = kUnknown;      ///< m, 95 % error of the pose at the target
+  double innovation = kUnknown;      ///< m, of the newest pose
+  double since_jump = 0.0;           ///< s
+  double goal_distance = kUnknown;   ///< m, tip to goal, mean of 5 ms
+  double settled_for = 0.0;          ///< s with that below the limit
+  double spot_distance = kUnknown;   ///< m, aiming spot to target in the newest frame
+  double reach_left = 0.0;           ///< m
+  double speed = kUnknown;           ///< m/s, of the tip on the retina
+  double retina_speed = kUnknown;    ///< m/s
+  double standoff_error = kUnknown;  ///< m
+  double clearance = 0.0;            ///< m, edge of the burn to the nearest vessel
 };
 
 /// Whether a pulse may begin or go on: only while every interlock is closed. What is not a number counts as open.

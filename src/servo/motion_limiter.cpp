@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::servo {
 
 namespace {
-
-constexpr double kMilli = 1e-3;
 
 // Written so that NaN becomes 0.
 double usableStep(double time_s) { return time_s > 0.0 ? std::min(time_s, MotionLimiter::kLongestStep_s) : 0.0; }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
 #include "eyeslam/servo/loop_time.h"
 
 namespace eyeslam::servo {
@@ -11,8 +12,6 @@ using retina::Reason;
 
 namespace {
 
-constexpr double kTwoPi = 2.0 * 3.14159265358979323846;
-constexpr double kMicro = 1e-6;
 constexpr int kRiccatiSteps = 20000;  // the slowest pole, the drift's, forgets in about 0.1 s: 100 steps
 constexpr double kConverged = 1e-13;
 

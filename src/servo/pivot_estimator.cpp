@@ -6,19 +6,18 @@
 #include <cmath>
 #include <limits>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::servo {
 
 using retina::Reason;
 
 namespace {
 
-constexpr double kPerMillimetre = 1e3;
-constexpr double kMicro = 1e-6;
-constexpr double kMilli = 1e-3;
 constexpr double k95 = 1.96;  // sigmas of an error along one direction
 constexpr int kGone = 20;     // shafts in a row that pass it by: the pivot serves no longer
 constexpr int kElsewhere = 500;
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kNoEstimate = std::numeric_limits<double>::infinity();
 
 bool isPose(const messaging::ToolPose& pose)
 {
@@ -33,7 +32,8 @@ double distanceFromLine(const Eigen::Vector3d& point, const Eigen::Vector3d& on_
 
 }  // namespace
 
-PivotEstimator::PivotEstimator(const PivotEstimatorOptions& options) noexcept : options_(options), sigma_(kNever) {}
+PivotEstimator::PivotEstimator(const PivotEstimatorOptions& options) noexcept : options_(options), sigma_(kNoEstimate)
+{}
 
 bool PivotEstimator::isKnown() const noexcept
 {
@@ -65,7 +65,7 @@ Reason PivotEstimator::observe(const messaging::ToolPose& null, const Eigen::Vec
   if (!isNew(axis)) return Reason::tip_at_rest;
   if (samples_ == 0) origin_ = at_rest;
   last_axis_ = axis;
-  absorb((at_rest - origin_) * kPerMillimetre, axis);
+  absorb((at_rest - origin_) * kPerMilli, axis);
   solve();
   return Reason::none;
 }
@@ -89,17 +89,17 @@ void PivotEstimator::solve() noexcept
   const double least = spread.eigenvalues()[0];
   constexpr double kParallel = 1e-9;  // of the weight: shafts within 0.03 mrad
   if (!(least > kParallel * weight_)) {
-    sigma_ = kNever;
+    sigma_ = kNoEstimate;
     return;
   }
   const Eigen::Vector3d along = spread.eigenvectors().transpose() * moment_;
   const Eigen::Vector3d solution = spread.eigenvectors() * along.cwiseQuotient(spread.eigenvalues());
   const double freedoms = std::max(1.0, 2.0 * weight_ - 3.0);  // two distances a line
   const double variance = std::max(0.0, squares_ - solution.dot(moment_)) / freedoms;
-  residual_ = std::sqrt(2.0 * variance) / kPerMillimetre;
-  rest_ = origin_ + solution / kPerMillimetre;
+  residual_ = std::sqrt(2.0 * variance) / kPerMilli;
+  rest_ = origin_ + solution / kPerMilli;
   const double least_residual = options_.least_residual_um * kMicro;
-  sigma_ = std::max(std::sqrt(variance) / kPerMillimetre, least_residual) * std::sqrt(options_.shafts_alike / least);
+  sigma_ = std::max(std::sqrt(variance) / kPerMilli, least_residual) * std::sqrt(options_.shafts_alike / least);
 }
 
 void PivotEstimator::startAnew() noexcept { *this = PivotEstimator(options_); }

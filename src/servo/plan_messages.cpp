@@ -7,6 +7,7 @@
 
 #include "eyeslam/messaging/record_messages.h"
 #include "eyeslam/retina/sha256.h"
+#include "eyeslam/retina/units.h"
 
 namespace eyeslam::servo {
 namespace {
@@ -14,9 +15,6 @@ namespace {
 using fixtures::BurnPlan;
 using fixtures::BurnTarget;
 using retina::Reason;
-
-constexpr double kPerSecond_ms = 1e3;
-constexpr double kPerWatt_mw = 1e3;
 
 void add(retina::Sha256& sha, const burn_target_t& target)
 {
@@ -40,8 +38,8 @@ burn_target_t messageOf(const BurnTarget& target)
   message.y_px = target.position_px.y();
   message.spot_um = target.spot_um;
   message.burn_um = target.burn_um;
-  message.duration = target.duration_ms / kPerSecond_ms;
-  message.power = target.power_mw / kPerWatt_mw;
+  message.duration = target.duration_ms / kPerMilli;
+  message.power = target.power_mw / kPerMilli;
   message.clearance_um = target.clearance_um;
   return message;
 }
@@ -53,8 +51,8 @@ BurnTarget targetOf(const burn_target_t& message)
   target.position_px = {message.x_px, message.y_px};
   target.spot_um = message.spot_um;
   target.burn_um = message.burn_um;
-  target.duration_ms = message.duration * kPerSecond_ms;
-  target.power_mw = message.power * kPerWatt_mw;
+  target.duration_ms = message.duration * kPerMilli;
+  target.power_mw = message.power * kPerMilli;
   target.tile = message.tile;
   target.clearance_um = message.clearance_um;
   if (message.state == burn_target_t::REFUSED) {

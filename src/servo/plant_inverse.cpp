@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "eyeslam/servo/plant_inverse.h"
 
+#include "eyeslam/retina/units.h"
+#include "eyeslam/servo/square.h"
+
 namespace eyeslam::servo {
 
 namespace {
 
-constexpr double kTwoPi = 2.0 * 3.14159265358979323846;
 constexpr int kTerms = 40;  // of the exponential's series: at 1000 Hz and 1 ms the last is below 1e-12
-
-double square(double x) { return x * x; }
 
 }  // namespace
 

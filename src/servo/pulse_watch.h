@@ -7,6 +7,7 @@
 
 #include "eyeslam/messaging/laser_messages.h"
 #include "eyeslam/retina/reason.h"
+#include "eyeslam/servo/unknown.h"
 
 namespace eyeslam::servo {
 
@@ -22,7 +23,7 @@ struct PulseFate {
 /// What the laser says in a cycle.
 struct LaserWord {
   const messaging::LaserState* state = nullptr;  ///< null before the first
-  double age_s = 1e9;                            ///< since it was received
+  double age_s = kUnknown;                       ///< since it was received
 };
 
 /// One pulse from the first command to the laser's word about its end. The command is held while it is meant; once it

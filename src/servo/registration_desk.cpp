@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/servo/unknown.h"
+
 namespace eyeslam::servo {
 
 using retina::Reason;
 
 namespace {
-
-constexpr double kUnknown = 1e9;
 
 // RMS per axis, px.
 double sigmaOf(const messaging::ImagePoint& point) { return std::sqrt(std::max(0.0, 0.5 * point.covariance.trace())); }

@@ -4,18 +4,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
+#include "eyeslam/servo/square.h"
+
 namespace eyeslam::servo {
 
 using retina::Reason;
 
 namespace {
 
-constexpr double kMicro = 1e-6;
 constexpr double kLever = 1e-3;           // m: makes all six corrections lengths of one size
 constexpr double kLargestMatrix = 0.2;    // beyond it the registration is wrong, not off: the inverse stays safe
 constexpr double kLongestPause_s = 60.0;  // a longer one adds no more doubt
-
-double square(double x) { return x * x; }
 
 }  // namespace
 

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
 #include "eyeslam/servo/loop_time.h"
+#include "eyeslam/servo/square.h"
 
 namespace eyeslam::servo {
 
@@ -13,9 +15,6 @@ using Signals = MotionFilter::Signals;
 
 namespace {
 
-constexpr double kMicro = 1e-6;
-constexpr double kMilli = 1e-3;
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr double kSlowFrames_s = 1.0 / 30.0;
 constexpr double kFastFrames_s = 1.0 / 120.0;
 constexpr double kIntervalShare = 0.1;            // of a new interval in the running mean
@@ -25,8 +24,6 @@ constexpr double kHistory_s = 0.5;                // of the port, and the longes
 constexpr std::int64_t kCalm_us = 100'000;        // a jump within this of another is no outlier: the eye is jumping
 constexpr double kTurnVelocity = 20.0 * kDegree;  // rad/s, of the eye about its line of sight; source: assumption
 constexpr double kZoomVelocity = 0.1;             // 1/s
-
-double square(double x) { return x * x; }
 
 // What is left of a time over which a velocity counts fully up to `from` and then fades.
 double fadedTime(double time_s, double from_s, double fade_s)

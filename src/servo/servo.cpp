@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "eyeslam/retina/units.h"
 #include "eyeslam/servo/loop_time.h"
+#include "eyeslam/servo/unknown.h"
 
 namespace eyeslam::servo {
 
@@ -16,13 +18,11 @@ using retina::Reason;
 
 namespace {
 
-constexpr double kMilli = 1e-3;
 constexpr std::int64_t kRegistrationPeriod_us = 1'000'000;  // contracts, section 4
 
 double ageOf(const messaging::ChannelReceiver& channel, std::int64_t monotonic)
 {
-  constexpr double kNever = 1e9;
-  return channel.accepted() == 0 ? kNever : seconds(channel.silence(monotonic));
+  return channel.accepted() == 0 ? kUnknown : seconds(channel.silence(monotonic));
 }
 
 }  // namespace

@@ -4,17 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
 #include "eyeslam/servo/loop_time.h"
 
 namespace eyeslam::servo {
 
 using retina::Reason;
-
-namespace {
-
-constexpr double kMilli = 1e-3;
-
-}  // namespace
 
 ServoCycle::ServoCycle(const ServoCycleOptions& options, const ViewPlacement& placement)
     : options_(options),

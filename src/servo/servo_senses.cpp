@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
 #include "eyeslam/servo/loop_time.h"
+#include "eyeslam/servo/unknown.h"
 
 namespace eyeslam::servo {
 
@@ -13,9 +15,6 @@ using retina::Reason;
 
 namespace {
 
-constexpr double kMicro = 1e-6;
-constexpr double kMilli = 1e-3;
-constexpr double kNever = 1e9;              // s
 constexpr double kWithin95 = 2.4477;        // sigmas: 95 % of a circular normal distribution
 constexpr std::int64_t kGlance_us = 1'000;  // over which the retina's speed is taken
 
@@ -168,9 +167,9 @@ void ServoSenses::describe(const Outlook& outlook, BurnInput& input) const noexc
   if (!input.tracked) return;
   input.pose_utime = retina.utime();
   input.pose_age = seconds(input_.now - retina.utime());
-  input.since_pose = pose_came_at_ == 0 ? kNever : seconds(input_.now - pose_came_at_);
+  input.since_pose = pose_came_at_ == 0 ? kUnknown : seconds(input_.now - pose_came_at_);
   input.innovation = retina.surprise();
-  input.since_jump = retina.jumpUtime() == 0 ? kNever : seconds(input_.now - retina.jumpUtime());
+  input.since_jump = retina.jumpUtime() == 0 ? kUnknown : seconds(input_.now - retina.jumpUtime());
   input.retina_speed = retinaSpeed(outlook);
   const MicronState* state = ears_.states.latest();
   if (!state) return;

@@ -10,7 +10,7 @@ namespace eyeslam::servo {
 
 namespace {
 
-double ageOf(const messaging::ChannelReceiver& channel, std::int64_t monotonic)
+double reportedAge(const messaging::ChannelReceiver& channel, std::int64_t monotonic)
 {
   return channel.accepted() == 0 ? -1.0 : seconds(channel.silence(monotonic));
 }
@@ -29,9 +29,9 @@ void StatusReport::gather(const ServoEars& ears, const CycleTiming& timing, std:
   status_.lateness = std::max(status_.lateness, atMost(timing.lateness_s, 1e3));
   status_.overruns = timing.overruns;
   ++status_.cycles;
-  status_.state_age = ageOf(ears.states, monotonic);
-  status_.laser_age = ageOf(ears.lasers, monotonic);
-  status_.operator_age = ageOf(ears.operators, monotonic);
+  status_.state_age = reportedAge(ears.states, monotonic);
+  status_.laser_age = reportedAge(ears.lasers, monotonic);
+  status_.operator_age = reportedAge(ears.operators, monotonic);
   status_.messages_lost = 0;
   status_.messages_refused = {};
   ears.forEach([this](const messaging::ChannelReceiver& channel) {

@@ -15,7 +15,7 @@ using retina::Reason;
 namespace {
 
 constexpr int kDraws = 60;  // a third of wrong points leaves (2/3)^3 good draws: none in 60 has a chance of 1e-9
-constexpr int kPasses = 10;
+constexpr int kPlanePasses = 10;
 
 struct Spread {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -92,7 +92,7 @@ SurfaceFit fitSurface(const std::vector<Eigen::Vector3d>& points, const Eigen::V
   if (static_cast<double>(used.size()) < options.least_points || !towards.allFinite()) return fit;
   Spread plane = drawnPlane(used);
   std::vector<double> weights(used.size()), scratch;
-  for (int pass = 0; pass < kPasses; ++pass) {
+  for (int pass = 0; pass < kPlanePasses; ++pass) {
     constexpr double kNormal = 1.4826;
     constexpr double kSmallest = 1e-6;  // m; exact points would leave no width to the weights
     const double cut = 4.7 * std::max(kSmallest, kNormal * medianDistance(used, plane, scratch));

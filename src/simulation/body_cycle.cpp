@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::simulation {
 
 namespace {
 
-constexpr double kTwoPi = 6.28318530717958647693;
 constexpr int kSamples = 720;  // of one period, to find its peak: half a degree is 4e-5 of the peak at most
 
 }  // namespace

@@ -9,6 +9,9 @@
 
 namespace eyeslam::simulation {
 
+/// Of the view for which the conditions state lengths in frame px; another view's are scaled by its own width.
+inline constexpr double kUsualWidth_px = 800.0;
+
 /// How the retina itself looks.
 struct TissueOptions {
   double um_per_px = 5.3;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
 #include "eyeslam/simulation/sequence_renderer.h"
 #include "eyeslam/simulation/view_canvas.h"
 #include "eyeslam/simulation/view_planner.h"
@@ -12,8 +13,6 @@ namespace eyeslam::simulation {
 
 namespace {
 
-constexpr double kUsualWidth_px = 800.0;
-constexpr double kTwoPi = 6.28318530717958647693;
 constexpr int kRoundPoses = 60;
 
 /// Once round the start, as far out as the retina may go: what the canvas must hold.

@@ -6,16 +6,14 @@
 #include <limits>
 
 #include "eyeslam/retina/smoothstep.h"
+#include "eyeslam/retina/units.h"
 
 namespace eyeslam::simulation {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kMilli = 1e-3;
-constexpr double kDegree = kPi / 180.0;
 constexpr double kHomeward_rad = 0.5;  // how far from the way back a jerk that returns may point
-constexpr std::uint64_t kStream = 55;
+constexpr std::uint64_t kJerkStream = 55;
 
 }  // namespace
 
@@ -27,7 +25,7 @@ EyeJerks::EyeJerks(const RetinaMotionOptions& options, std::uint64_t seed)
       turn_(options.jerk_rotation_deg * kDegree),
       reach_(options.reach_mm * kMilli),
       tool_share_(options.tool_jerk_share),
-      random_(seed, kStream)
+      random_(seed, kJerkStream)
 {
   jerk_ = drawn(0.0);
 }
@@ -40,7 +38,7 @@ EyeJerks::Jerk EyeJerks::drawn(double earliest_s)
   jerk.start_s =
       rate_ > 0.0 ? earliest_s - spare * std::log1p(-random_.uniform()) : std::numeric_limits<double>::infinity();
   const double length = random_.uniform(shortest_, longest_);
-  double angle = random_.uniform(0.0, 2.0 * kPi);
+  double angle = random_.uniform(0.0, kTwoPi);
   const Eigen::Vector2d from = own_done_ + tool_done_;
   const Eigen::Vector2d to = from + length * Eigen::Vector2d(std::cos(angle), std::sin(angle));
   if (to.norm() > reach_) angle = std::atan2(-from.y(), -from.x()) + random_.uniform(-kHomeward_rad, kHomeward_rad);

@@ -6,11 +6,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::simulation {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kBreath_hz = 0.25;
 constexpr double kPulse_hz = 1.1;
 constexpr double kJump_s = 0.045;
@@ -24,7 +25,7 @@ double smoothStep(double t)
   return s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
 }
 
-EyeMotionOptions jerky()
+EyeMotionOptions jerkyEyeMotion()
 {
   EyeMotionOptions options;
   options.drift_px = 60.0;
@@ -33,7 +34,7 @@ EyeMotionOptions jerky()
   return options;
 }
 
-EyeMotionOptions saccade()
+EyeMotionOptions saccadeEyeMotion()
 {
   EyeMotionOptions options;
   options.drift_px = 8.0;
@@ -47,7 +48,7 @@ EyeMotionOptions saccade()
   return options;
 }
 
-EyeMotionOptions inSitu()
+EyeMotionOptions inSituEyeMotion()
 {
   EyeMotionOptions options;
   options.drift_px = 20.0;
@@ -59,7 +60,7 @@ EyeMotionOptions inSitu()
   return options;
 }
 
-EyeMotionOptions excursion()
+EyeMotionOptions excursionEyeMotion()
 {
   EyeMotionOptions options;
   options.drift_px = 12.0;
@@ -68,7 +69,7 @@ EyeMotionOptions excursion()
   return options;
 }
 
-EyeMotionOptions scaling()
+EyeMotionOptions scalingEyeMotion()
 {
   EyeMotionOptions options;
   options.scale_change = 0.06;
@@ -87,16 +88,16 @@ const std::vector<const char*>& eyeMotionNames()
 EyeMotionOptions eyeMotionOptions(const std::string& name)
 {
   if (name == "smooth") return {};
-  if (name == "jerky") return jerky();
-  if (name == "saccade") return saccade();
-  if (name == "in_situ") return inSitu();
-  if (name == "excursion") return excursion();
-  if (name == "scaling") return scaling();
+  if (name == "jerky") return jerkyEyeMotion();
+  if (name == "saccade") return saccadeEyeMotion();
+  if (name == "in_situ") return inSituEyeMotion();
+  if (name == "excursion") return excursionEyeMotion();
+  if (name == "scaling") return scalingEyeMotion();
   throw std::invalid_argument("motion '" + name +
                               "' is not known; smooth, jerky, saccade, in_situ, excursion and scaling are");
 }
 
-double EyeMotion::Wave::at(double t) const { return amplitude * std::sin(2.0 * kPi * hz * t + phase); }
+double EyeMotion::Wave::at(double t) const { return amplitude * std::sin(kTwoPi * hz * t + phase); }
 
 EyeMotion::EyeMotion(const EyeMotionOptions& options, double px_scale, double duration_s, std::uint64_t seed)
     : options_(options), px_scale_(px_scale)
@@ -105,16 +106,14 @@ EyeMotion::EyeMotion(const EyeMotionOptions& options, double px_scale, double du
   for (std::vector<Wave>* axis : {&x_, &y_}) {
     addWaves(*axis, options.drift_px * px_scale, options.drift_hz, 3, random);
     addWaves(*axis, options.tremor_px * px_scale, options.tremor_hz, 2, random);
-    axis->push_back(
-        {options.breath_px * px_scale * random.uniform(0.3, 1.0), kBreath_hz, random.uniform(0.0, 2.0 * kPi)});
-    axis->push_back(
-        {options.pulse_px * px_scale * random.uniform(0.3, 1.0), kPulse_hz, random.uniform(0.0, 2.0 * kPi)});
+    axis->push_back({options.breath_px * px_scale * random.uniform(0.3, 1.0), kBreath_hz, random.uniform(0.0, kTwoPi)});
+    axis->push_back({options.pulse_px * px_scale * random.uniform(0.3, 1.0), kPulse_hz, random.uniform(0.0, kTwoPi)});
   }
   addWaves(theta_, radians(options.rotation_deg), 0.6 * options.drift_hz, 2, random);
   excursion_angle_ = radians(random.uniform(-25.0, 25.0)) + (random.chance(0.5) ? kPi : 0.0);
   for (Wave& wave : warp_) {
     wave = {options.warp_px * px_scale * random.uniform(0.4, 1.0), random.uniform(0.06, 0.18),
-            random.uniform(0.0, 2.0 * kPi)};
+            random.uniform(0.0, kTwoPi)};
   }
   planJerks(duration_s, random);
   start_ = raw(0.0);
@@ -126,7 +125,7 @@ void EyeMotion::addWaves(std::vector<Wave>& waves, double amplitude, double hz, 
     const double frequency = hz * std::pow(1.8, i - (count - 1) / 2.0) * random.uniform(0.85, 1.15);
     // Slower waves reach farther, as in a random walk.
     waves.push_back(
-        {amplitude * std::pow(1.8, -0.6 * i) * random.uniform(0.6, 1.1), frequency, random.uniform(0.0, 2.0 * kPi)});
+        {amplitude * std::pow(1.8, -0.6 * i) * random.uniform(0.6, 1.1), frequency, random.uniform(0.0, kTwoPi)});
   }
 }
 
@@ -138,7 +137,7 @@ void EyeMotion::planJerks(double duration_s, Random& random)
   double t = options_.jerk_interval_s * random.uniform(0.5, 1.0);
   while (t < duration_s) {
     const double length = px_scale_ * random.uniform(options_.jerk_shortest_px, options_.jerk_longest_px);
-    double angle = random.uniform(0.0, 2.0 * kPi);
+    double angle = random.uniform(0.0, kTwoPi);
     if (std::hypot(x + length * std::cos(angle), y + length * std::sin(angle)) > options_.reach_px * px_scale_) {
       angle = std::atan2(-y, -x) + random.uniform(-0.5, 0.5);
     }
@@ -174,7 +173,7 @@ retina::Pose2 EyeMotion::raw(double t) const
   const double out = options_.excursion_px * px_scale_ * std::sin(turn) * std::abs(std::sin(turn));
   pose.x += out * std::cos(excursion_angle_);
   pose.y += std::abs(out) * std::sin(excursion_angle_);
-  pose.scale = 1.0 + options_.scale_change * std::sin(2.0 * kPi * t / options_.scale_period_s);
+  pose.scale = 1.0 + options_.scale_change * std::sin(kTwoPi * t / options_.scale_period_s);
   return pose;
 }
 

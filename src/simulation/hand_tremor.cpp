@@ -3,13 +3,14 @@
 
 #include <algorithm>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::simulation {
 
 namespace {
 
-constexpr double kMicro = 1e-6;
-constexpr std::uint64_t kDrawn = 40;      // stream of what is drawn once
-constexpr std::uint64_t kFirstAxis = 41;  // three streams per axis from here on
+constexpr std::uint64_t kDrawnSizes = 40;  // stream of what is drawn once
+constexpr std::uint64_t kFirstAxis = 41;   // three streams per axis from here on
 
 Random stream(std::uint64_t seed, int axis, int part)
 {
@@ -32,7 +33,7 @@ HandTremor::HandTremor(const HandTremorOptions& options, std::uint64_t seed, dou
       lean_step_(options.lean_rise_s > period_s ? period_s / options.lean_rise_s : 1.0),
       axes_{axis(options, seed, 0, period_s), axis(options, seed, 1, period_s), axis(options, seed, 2, period_s)}
 {
-  Random random(seed, kDrawn);
+  Random random(seed, kDrawnSizes);
   tremor_rms_ = random.uniform(options.tremor_low_um, options.tremor_high_um) * kMicro;
   drift_rms_ = random.uniform(options.drift_low_um, options.drift_high_um) * kMicro;
 }

@@ -5,6 +5,9 @@
 #include <limits>
 #include <utility>
 
+#include "eyeslam/retina/units.h"
+#include "eyeslam/simulation/loop_period.h"
+
 namespace eyeslam::simulation {
 
 using messaging::LaserState;
@@ -12,8 +15,6 @@ using messaging::ReceiveTime;
 
 namespace {
 
-constexpr double kPeriod_s = 1e-3;
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr std::int64_t kLaserSteps = 10;           // LASER_STATE at 100 Hz
 constexpr std::int64_t kClockStep_us = 1'000'000;  // HardwareFault::clock_step
 const Eigen::Vector3d kOffset(0.03, -0.02, 0.05);  // m: of the world in the manipulator's frame; none of them is 0

@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "eyeslam/retina/smoothstep.h"
+#include "eyeslam/retina/units.h"
 
 namespace eyeslam::simulation {
 
@@ -13,7 +14,6 @@ namespace {
 
 constexpr int kLightCell = 8;  // light is smooth: computed once per cell, interpolated between
 constexpr double kSwitching_s = 0.02;
-constexpr double kTwoPi = 6.28318530717958647693;
 
 }  // namespace
 

@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "eyeslam/retina/smoothstep.h"
+#include "eyeslam/retina/units.h"
 
 namespace eyeslam::simulation {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kBluntTip = 0.14;  // half width at the very end, of the shaft's half width
 constexpr double kMoving_s = 0.8;   // how long the way in or out takes
 constexpr std::size_t kBrushed = 256;
@@ -24,7 +24,7 @@ double metal(double across)
 
 }  // namespace
 
-double Instrument::Wave::at(double t) const { return amplitude * std::sin(2.0 * kPi * hz * t + phase); }
+double Instrument::Wave::at(double t) const { return amplitude * std::sin(kTwoPi * hz * t + phase); }
 
 Instrument::Instrument(const InstrumentOptions& options, cv::Size view, double px_scale, double duration_s,
                        std::uint64_t seed)
@@ -39,12 +39,12 @@ Instrument::Instrument(const InstrumentOptions& options, cv::Size view, double p
   for (std::vector<Wave>* axis : {&x_, &y_}) {
     for (const double hz : {0.13, 0.31, 0.7}) {
       const double amplitude = options.wander_px * px_scale * 0.1 / hz * random.uniform(0.5, 1.0);
-      axis->push_back({amplitude, hz * random.uniform(0.8, 1.2), random.uniform(0.0, 2.0 * kPi)});
+      axis->push_back({amplitude, hz * random.uniform(0.8, 1.2), random.uniform(0.0, kTwoPi)});
     }
     // The hand's tremor, 8-12 Hz (facts, C).
-    axis->push_back({0.6 * px_scale, random.uniform(8.0, 12.0), random.uniform(0.0, 2.0 * kPi)});
+    axis->push_back({0.6 * px_scale, random.uniform(8.0, 12.0), random.uniform(0.0, kTwoPi)});
   }
-  turn_.push_back({random.uniform(0.08, 0.16), random.uniform(0.08, 0.2), random.uniform(0.0, 2.0 * kPi)});
+  turn_.push_back({random.uniform(0.08, 0.16), random.uniform(0.08, 0.2), random.uniform(0.0, kTwoPi)});
   for (std::size_t i = 0; i < kBrushed; ++i) brushed_.push_back(static_cast<float>(random.normal()));
   planVisits(duration_s, random);
 }
@@ -104,6 +104,25 @@ cv::Rect Instrument::reach(const InstrumentPose& pose, double margin) const
   return cv::Rect(low, high) & cv::Rect({0, 0}, view_);
 }
 
+// Of a row, the columns that are no farther from the outline than `margin`, and a few more.
+cv::Range Instrument::columnsNear(const InstrumentPose& pose, double margin, int y, const cv::Rect& area) const
+{
+  constexpr double kFlat = 1e-3;  // a row along which, or across which, the shaft lies does not bound it
+  const double c = std::cos(pose.shaft_angle), s = std::sin(pose.shaft_angle), dy = y - pose.tip.y;
+  double low = area.x, high = area.x + area.width - 1;
+  if (std::abs(s) > kFlat) {
+    const double reach = (0.5 * pose.shaft_width + margin) / std::abs(s), middle = pose.tip.x + dy * c / s;
+    low = std::max(low, middle - reach - 1.0);
+    high = std::min(high, middle + reach + 1.0);
+  }
+  if (std::abs(c) > kFlat) {
+    const double ahead = pose.tip.x + (margin - dy * s) / c;
+    c > 0.0 ? high = std::min(high, ahead + 1.0) : low = std::max(low, ahead - 1.0);
+  }
+  return low > high ? cv::Range(0, 0)
+                    : cv::Range(cvFloor(low), cvCeil(high) + 1) & cv::Range(area.x, area.x + area.width);
+}
+
 // Signed distance to the outline, negative inside; px. Beside the taper it is measured across, near enough.
 double Instrument::distanceOutside(double behind, double aside, double width) const
 {
@@ -122,7 +141,8 @@ int Instrument::draw(const InstrumentPose& pose, const cv::Mat_<float>& field, c
   const cv::Rect area = reach(pose, 2.0 * soft);
   int covered = 0;
   for (int y = area.y; y < area.y + area.height; ++y) {
-    for (int x = area.x; x < area.x + area.width; ++x) {
+    const cv::Range columns = columnsNear(pose, soft, y, area);
+    for (int x = columns.start; x < columns.end; ++x) {
       const double behind = -((x - pose.tip.x) * c + (y - pose.tip.y) * s);
       const double aside = -(x - pose.tip.x) * s + (y - pose.tip.y) * c;
       const double outside = distanceOutside(behind, aside, pose.shaft_width);
@@ -154,7 +174,8 @@ void Instrument::castShadow(const InstrumentPose& pose, cv::Mat_<float>& light) 
   const double soft = 0.35 * pose.shaft_width + 2.0 * px_scale_;
   const cv::Rect area = reach(shadow, soft);
   for (int y = area.y; y < area.y + area.height; ++y) {
-    for (int x = area.x; x < area.x + area.width; ++x) {
+    const cv::Range columns = columnsNear(shadow, soft, y, area);
+    for (int x = columns.start; x < columns.end; ++x) {
       const double behind = -((x - shadow.tip.x) * c + (y - shadow.tip.y) * s);
       const double aside = -(x - shadow.tip.x) * s + (y - shadow.tip.y) * c;
       const double outside = distanceOutside(behind, aside, pose.shaft_width);

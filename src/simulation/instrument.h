@@ -73,6 +73,7 @@ class Instrument {
   void planVisits(double duration_s, Random& random);
   double retreat(double t_s) const;
   cv::Rect reach(const InstrumentPose& pose, double margin_px) const;
+  cv::Range columnsNear(const InstrumentPose& pose, double margin, int y, const cv::Rect& area) const;
   double distanceOutside(double behind_px, double aside_px, double width_px) const;
 
   InstrumentOptions options_;

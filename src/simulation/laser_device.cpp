@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "eyeslam/simulation/laser_device.h"
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::simulation {
 
 using messaging::LaserAction;
 using messaging::LaserCommand;
 using retina::Reason;
-
-namespace {
-
-constexpr double kMilli = 1e-3;
-
-}  // namespace
 
 LaserDevice::LaserDevice(const LaserDeviceOptions& options, double period_s)
     : longest_command_(options.expiry_ms * kMilli),

@@ -6,6 +6,9 @@
 #include <optional>
 
 #include "eyeslam/retina/smoothstep.h"
+#include "eyeslam/retina/turn_between.h"
+#include "eyeslam/retina/units.h"
+#include "eyeslam/simulation/shortened.h"
 
 namespace eyeslam::simulation {
 
@@ -16,15 +19,7 @@ using retina::Reason;
 
 namespace {
 
-constexpr double kMicro = 1e-6;
-constexpr double kMilli = 1e-3;
 constexpr double kNear = 100e-6;  // m: what the tip is behind a goal at 20 mm/s, by the plant's lead
-
-Eigen::Vector3d shortened(const Eigen::Vector3d& way, double longest)
-{
-  const double length = way.norm();
-  return length > longest ? Eigen::Vector3d(way * (longest / length)) : way;
-}
 
 double distanceFromLine(const Eigen::Vector3d& point, const Eigen::Vector3d& on_line, const Eigen::Vector3d& direction)
 {
@@ -172,11 +167,10 @@ messaging::ToolPose MicronController::toolPose(const Eigen::Vector3d& tip, const
                                                double along) const
 {
   const Eigen::Vector3d shaft = (up - tip).normalized();
-  const Eigen::Quaterniond first = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), way_);
+  const Eigen::Quaterniond first = retina::turnBetween(Eigen::Vector3d::UnitZ(), way_);
   messaging::ToolPose pose;
   pose.position = manipulator_T_world_ * (tip + along * shaft);
-  pose.orientation =
-      (Eigen::Quaterniond::FromTwoVectors(way_, manipulator_T_world_.linear() * -shaft) * first).normalized();
+  pose.orientation = (retina::turnBetween(way_, manipulator_T_world_.linear() * -shaft) * first).normalized();
   return pose;
 }
 

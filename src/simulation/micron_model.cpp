@@ -4,20 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
+#include "eyeslam/simulation/shortened.h"
+
 namespace eyeslam::simulation {
 
 namespace {
 
-constexpr double kTwoPi = 2.0 * 3.14159265358979323846;
-constexpr double kMicro = 1e-6;
-constexpr double kMilli = 1e-3;
-constexpr std::uint64_t kNoise = 70, kDrawn = 71, kFirstBend = 72;  // streams of the seed
-
-Eigen::Vector3d shortened(const Eigen::Vector3d& way, double longest)
-{
-  const double length = way.norm();
-  return length > longest ? Eigen::Vector3d(way * (longest / length)) : way;
-}
+constexpr std::uint64_t kNoise = 70, kDrawnGains = 71, kFirstBend = 72;  // streams of the seed
 
 // A command is held for a period, so the middle of its effect comes half a period later than its start.
 std::size_t delaySubsteps(double delay_periods, int substeps, std::size_t most)
@@ -38,7 +32,7 @@ MicronModel::MicronModel(const MicronOptions& options, std::uint64_t seed, doubl
             ShapedNoise::lowPass(options.bend_hz, period_s, Random(seed, kFirstBend + 1)),
             ShapedNoise::lowPass(options.bend_hz, period_s, Random(seed, kFirstBend + 2))}
 {
-  Random random(seed, kDrawn);
+  Random random(seed, kDrawnGains);
   for (double& gain : gain_.reshaped()) gain = 1.0 + (random.chance(0.5) ? 1.0 : -1.0) * options.gain_error;
   commands_.fill(Eigen::Vector3d::Zero());
 }

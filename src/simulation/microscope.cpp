@@ -6,13 +6,13 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "eyeslam/retina/units.h"
 #include "eyeslam/simulation/retina_sampler.h"
 
 namespace eyeslam::simulation {
 
 namespace {
 
-constexpr double kTwoPi = 6.28318530717958647693;
 constexpr int kMostSubExposures = 32;
 constexpr double kSubExposure_px = 2.0;  // the retina moves no more between two of them: under the optics' blur
 constexpr double kSeen = 0.5;            // of the light: below it the retina counts as hidden

@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "eyeslam/retina/smoothstep.h"
+#include "eyeslam/retina/units.h"
+#include "eyeslam/simulation/shortened.h"
 
 namespace eyeslam::simulation {
 
 namespace {
 
-constexpr double kMilli = 1e-3;
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr double kShortest = 5e-3, kLongest = 0.1;         // m; a pivot elsewhere is none of a needle's
 constexpr double kFarReach_mm = 10.0;                      // the tilt bounds it, not the cylinder of the tip
 constexpr std::uint64_t kOtherSeed = 0x9e3779b97f4a7c15U;  // its noise and gains are not the tip's
@@ -20,12 +20,6 @@ MicronOptions ofTheShaft(MicronOptions plant)
 {
   plant.reach_mm = plant.reach_axial_mm = kFarReach_mm;
   return plant;
-}
-
-Eigen::Vector3d shortened(const Eigen::Vector3d& way, double longest)
-{
-  const double length = way.norm();
-  return length > longest ? Eigen::Vector3d(way * (longest / length)) : way;
 }
 
 Eigen::Vector3d across(const Eigen::Vector3d& way, const Eigen::Vector3d& shaft)

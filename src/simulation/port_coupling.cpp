@@ -4,17 +4,19 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::simulation {
 
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr double kEasing = 0.1;  // of the wandering's time: a first-order wander alone is rough, like a random walk
-constexpr std::uint64_t kStream = 50;  // gain, turn and wandering; the port's noise on the next two
+constexpr std::uint64_t kPortStream = 50;  // gain, turn and wandering; the port's noise on the next two
 
 ShapedNoise portNoise(const RetinaMotionOptions& options, std::uint64_t seed, int axis, double period_s)
 {
-  return ShapedNoise::lowPass(options.port_hz, period_s, Random(seed, kStream + 1 + static_cast<std::uint64_t>(axis)));
+  return ShapedNoise::lowPass(options.port_hz, period_s,
+                              Random(seed, kPortStream + 1 + static_cast<std::uint64_t>(axis)));
 }
 
 FilterCascade globe(const RetinaMotionOptions& options, double period_s)
@@ -42,7 +44,7 @@ PortCoupling::PortCoupling(const RetinaMotionOptions& options, double speed, std
       wander_rms_(options.port_wander),
       wander_kept_(std::exp(-period_s / options.port_wander_s)),
       wander_eased_(1.0 - std::exp(-period_s / (kEasing * options.port_wander_s))),
-      random_(seed, kStream)
+      random_(seed, kPortStream)
 {
   gain_ = options.port_gain * (1.0 + options.port_gain_spread * random_.uniform(-1.0, 1.0));
   turn_ = options.port_turn_deg * kDegree * random_.uniform(-1.0, 1.0);

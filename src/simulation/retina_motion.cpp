@@ -3,14 +3,12 @@
 
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::simulation {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kMicro = 1e-6;
-constexpr double kMilli = 1e-3;
-constexpr double kDegree = kPi / 180.0;
 constexpr double kTurn_hz = 0.15;
 constexpr double kAxial_hz = 5.0;
 // Streams of the seed, one a part, so that a change in one leaves the others as they were.
@@ -42,7 +40,7 @@ BodyCycle pulse(std::uint64_t seed)
 Eigen::Vector3d drawnWay(double low_um, double high_um, double axial_um, Random& random)
 {
   const double across = random.uniform(low_um, high_um);
-  const double angle = random.uniform(0.0, 2.0 * kPi);
+  const double angle = random.uniform(0.0, kTwoPi);
   return kMicro * Eigen::Vector3d(across * std::cos(angle), across * std::sin(angle), axial_um);
 }
 

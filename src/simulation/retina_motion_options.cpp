@@ -8,7 +8,7 @@ namespace eyeslam::simulation {
 namespace {
 
 // A slide on a table: nothing breathes, and no port ties it to the instrument.
-RetinaMotionOptions paper()
+RetinaMotionOptions paperRetinaMotion()
 {
   RetinaMotionOptions options;
   options.hand_share = 0.0;
@@ -19,14 +19,14 @@ RetinaMotionOptions paper()
   return options;
 }
 
-RetinaMotionOptions jerky()
+RetinaMotionOptions jerkyRetinaMotion()
 {
   RetinaMotionOptions options;
   options.jerks_per_s = 0.4;
   return options;
 }
 
-RetinaMotionOptions saccade()
+RetinaMotionOptions saccadeRetinaMotion()
 {
   RetinaMotionOptions options;
   options.jerks_per_s = 0.3;
@@ -46,10 +46,10 @@ const std::vector<const char*>& retinaMotionNames()
 
 RetinaMotionOptions retinaMotionOptions(const std::string& name)
 {
-  if (name == "paper") return paper();
+  if (name == "paper") return paperRetinaMotion();
   if (name == "in_situ") return {};
-  if (name == "jerky") return jerky();
-  if (name == "saccade") return saccade();
+  if (name == "jerky") return jerkyRetinaMotion();
+  if (name == "saccade") return saccadeRetinaMotion();
   throw std::invalid_argument("motion '" + name + "' is not known; paper, in_situ, jerky and saccade are");
 }
 

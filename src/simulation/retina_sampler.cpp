@@ -3,7 +3,8 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <vector>
+#include <array>
+#include <cstring>
 
 #include "eyeslam/retina/vector_kernel.h"
 
@@ -12,15 +13,12 @@ namespace eyeslam::simulation {
 namespace {
 
 constexpr int kFarAway_px = 1 << 20;
+constexpr std::size_t kChunk = 256;  // pixels of a row: their weights stay in the fastest cache
 
-// Where a row of the view lies along one axis of the canvas: whole pixels, and the weights of the four about each.
+// Where pixels of a row lie along one axis of the canvas: whole pixels, and the weights of the four about each.
 struct RowPlaces {
-  explicit RowPlaces(int columns) : whole(static_cast<std::size_t>(columns))
-  {
-    for (auto& weight : weights) weight.resize(whole.size());
-  }
-  std::vector<int> whole;
-  std::array<std::vector<float>, 4> weights;
+  std::array<int, kChunk> whole;
+  std::array<std::array<float, kChunk>, 4> weights;
 };
 
 // Position along the row, px: constant + linear dx + square dx^2.
@@ -47,11 +45,10 @@ EYESLAM_VECTOR_KERNEL void locate(const RowCurve& curve, double first_dx, int co
   }
 }
 
-void locate(const RowCurve& curve, double first_dx, RowPlaces& places)
+void locate(const RowCurve& curve, double first_dx, int columns, RowPlaces& places)
 {
   auto& w = places.weights;
-  locate(curve, first_dx, static_cast<int>(places.whole.size()), places.whole.data(), w[0].data(), w[1].data(),
-         w[2].data(), w[3].data());
+  locate(curve, first_dx, columns, places.whole.data(), w[0].data(), w[1].data(), w[2].data(), w[3].data());
 }
 
 // Weights x those 4 x 4 pixels of four colours, the rows at `rows`.
@@ -60,17 +57,31 @@ struct Taps {
   std::array<float, 4> across, down;
 };
 
+// Four colours of a pixel, and those of two side by side: the compiler does not find these vectors by itself.
+using OnePixel = float __attribute__((vector_size(16)));
+using TwoPixels = float __attribute__((vector_size(32)));
+
+// By reference, since the two clones of a kernel would hand vectors over in different ways.
+inline void readTwo(const Taps& taps, std::size_t first, TwoPixels& down)
+{
+  std::array<TwoPixels, 4> row;
+  for (std::size_t k = 0; k < 4; ++k) std::memcpy(&row[k], taps.rows[k] + first, sizeof(TwoPixels));
+  down = taps.down[0] * row[0] + taps.down[1] * row[1] + taps.down[2] * row[2] + taps.down[3] * row[3];
+}
+
 inline void addTaps(const Taps& taps, float weight, float* __restrict out)
 {
-  std::array<float, 16> line;
-  for (std::size_t k = 0; k < 16; ++k) {
-    line[k] = taps.down[0] * taps.rows[0][k] + taps.down[1] * taps.rows[1][k] + taps.down[2] * taps.rows[2][k] +
-              taps.down[3] * taps.rows[3][k];
-  }
-  for (std::size_t c = 0; c < 4; ++c) {
-    out[c] += weight * (taps.across[0] * line[c] + taps.across[1] * line[c + 4] + taps.across[2] * line[c + 8] +
-                        taps.across[3] * line[c + 12]);
-  }
+  TwoPixels left, right;
+  readTwo(taps, 0, left);
+  readTwo(taps, 8, right);
+  const OnePixel sum = taps.across[0] * __builtin_shufflevector(left, left, 0, 1, 2, 3) +
+                       taps.across[1] * __builtin_shufflevector(left, left, 4, 5, 6, 7) +
+                       taps.across[2] * __builtin_shufflevector(right, right, 0, 1, 2, 3) +
+                       taps.across[3] * __builtin_shufflevector(right, right, 4, 5, 6, 7);
+  OnePixel pixel;
+  std::memcpy(&pixel, out, sizeof pixel);
+  pixel += weight * sum;
+  std::memcpy(out, &pixel, sizeof pixel);
 }
 
 // At the canvas's border the pixels beyond it are those on it.
@@ -86,11 +97,11 @@ void addAtBorder(const cv::Mat& canvas, int x, int y, Taps taps, float weight, f
   addTaps(taps, weight, out);
 }
 
-EYESLAM_VECTOR_KERNEL void addRow(const cv::Mat& canvas, const RowPlaces& across, const RowPlaces& down, float weight,
-                                  float* out)
+EYESLAM_VECTOR_KERNEL void addRow(const cv::Mat& canvas, const RowPlaces& across, const RowPlaces& down,
+                                  std::size_t columns, float weight, float* out)
 {
   const std::size_t step = canvas.step1();
-  for (std::size_t i = 0; i < across.whole.size(); ++i, out += 4) {
+  for (std::size_t i = 0; i < columns; ++i, out += 4) {
     const int x = across.whole[i], y = down.whole[i];
     Taps taps;
     for (std::size_t k = 0; k < 4; ++k) {
@@ -117,12 +128,17 @@ void accumulateView(const cv::Mat& canvas, const ViewMapping& mapping, float wei
   const Eigen::Vector2d origin(mapping.map_origin.x, mapping.map_origin.y);
   const Eigen::Vector2d offset = centre + mapping.map_T_frame.translation() - origin;
   const auto& w = mapping.warp;
-  RowPlaces across(view.cols), down(view.cols);
+  RowPlaces across, down;
   for (int row = 0; row < view.rows; ++row) {
     const double dy = row - centre.y();
-    locate({offset.x() + linear(0, 1) * dy + w[2] * dy * dy, linear(0, 0) + w[1] * dy, w[0]}, -centre.x(), across);
-    locate({offset.y() + linear(1, 1) * dy + w[5] * dy * dy, linear(1, 0) + w[4] * dy, w[3]}, -centre.x(), down);
-    addRow(canvas, across, down, weight, view.ptr<float>(row));
+    const RowCurve x{offset.x() + linear(0, 1) * dy + w[2] * dy * dy, linear(0, 0) + w[1] * dy, w[0]};
+    const RowCurve y{offset.y() + linear(1, 1) * dy + w[5] * dy * dy, linear(1, 0) + w[4] * dy, w[3]};
+    for (int first = 0; first < view.cols; first += static_cast<int>(kChunk)) {
+      const int columns = std::min(static_cast<int>(kChunk), view.cols - first);
+      locate(x, first - centre.x(), columns, across);
+      locate(y, first - centre.x(), columns, down);
+      addRow(canvas, across, down, static_cast<std::size_t>(columns), weight, view.ptr<float>(row) + 4 * first);
+    }
   }
 }
 

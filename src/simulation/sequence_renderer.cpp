@@ -5,15 +5,13 @@
 #include <cmath>
 #include <utility>
 
+#include "eyeslam/retina/units.h"
 #include "eyeslam/simulation/view_canvas.h"
 #include "eyeslam/simulation/view_planner.h"
 
 namespace eyeslam::simulation {
 
 namespace {
-
-constexpr double kUsualWidth_px = 800.0;
-constexpr double kTwoPi = 6.28318530717958647693;
 
 // Nobody sees the eye's largest jumps of a video whose light goes out.
 void jumpInTheDark(EyeMotion& motion, const Condition& condition, const SequenceOptions& options)

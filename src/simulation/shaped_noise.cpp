@@ -3,11 +3,12 @@
 
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::simulation {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kTimeConstants = 14.0;  // exp(-14) of the start is left: below 1e-6
 
 // After so many samples a cascade has forgotten how it started.

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "eyeslam/simulation/shelving_filter.h"
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::simulation {
-
-namespace {
-
-constexpr double kTwoPi = 2.0 * 3.14159265358979323846;
-
-}  // namespace
 
 ShelvingFilter::ShelvingFilter(const ShelvingFilterOptions& options, double period_s) : passed_(options.passed)
 {

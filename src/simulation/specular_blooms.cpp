@@ -3,16 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "eyeslam/retina/units.h"
 #include "eyeslam/simulation/random.h"
 
 namespace eyeslam::simulation {
 
 namespace {
 
-constexpr double kTwoPi = 6.28318530717958647693;
 constexpr double kGlowReach = 4.5;  // of the core's radius; beyond it the glow is below a grey level
-constexpr double kWhitens = 3.3;    // of it; from here on the retina's own colour prevails
+constexpr double kGlowFading = 0.28, kCoreFading = 1.4;  // by squares of the core's radius
+constexpr double kWhitens = 3.3;                         // of it; from here on the retina's own colour prevails
 
 double fading(double t, double from_s, double to_s)
 {
@@ -67,13 +69,22 @@ void addGlow(cv::Mat& picture, cv::Point2d centre, double radius, const cv::Scal
   const cv::Rect area = cv::Rect(cv::Point(cvFloor(centre.x - reach), cvFloor(centre.y - reach)),
                                  cv::Point(cvCeil(centre.x + reach) + 1, cvCeil(centre.y + reach) + 1)) &
                         cv::Rect({0, 0}, picture.size());
+  // Fitted to the rendered sequences: a glow that alone nearly saturates, and a core within it. Of a sum of squares, so
+  // each is a product of what depends on x and what depends on y.
+  const auto falls = [radius](double fading, double away) {
+    return std::exp(-fading * away * away / (radius * radius));
+  };
+  std::vector<cv::Vec2d> across;
+  for (int x = area.x; x < area.x + area.width; ++x) {
+    across.emplace_back(1.03 * falls(kGlowFading, x - centre.x), 0.8 * falls(kCoreFading, x - centre.x));
+  }
   for (int y = area.y; y < area.y + area.height; ++y) {
-    for (int x = area.x; x < area.x + area.width; ++x) {
-      const double square = ((x - centre.x) * (x - centre.x) + (y - centre.y) * (y - centre.y)) / (radius * radius);
-      // Fitted to the rendered sequences: a glow that alone nearly saturates, and a core within it.
-      const double light = 1.03 * std::exp(-0.28 * square) + 0.8 * std::exp(-1.4 * square);
-      auto& pixel = picture.at<cv::Vec4f>(y, x);
-      for (int c = 0; c < 3; ++c) pixel[c] += static_cast<float>(light * colour[c]);
+    const cv::Vec2d down(falls(kGlowFading, y - centre.y), falls(kCoreFading, y - centre.y));
+    auto* pixel = picture.ptr<cv::Vec4f>(y) + area.x;
+    for (const cv::Vec2d& part : across) {
+      const double light = part[0] * down[0] + part[1] * down[1];
+      for (int c = 0; c < 3; ++c) (*pixel)[c] += static_cast<float>(light * colour[c]);
+      ++pixel;
     }
   }
 }

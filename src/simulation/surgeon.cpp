@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::simulation {
 
 namespace {
-
-constexpr double kMicro = 1e-6;
-constexpr double kMilli = 1e-3;
 
 // The part of a way that exceeds a length.
 Eigen::Vector3d beyond(const Eigen::Vector3d& way, double length)

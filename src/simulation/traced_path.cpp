@@ -6,11 +6,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::simulation {
 
 namespace {
 
-constexpr double kTwoPi = 6.28318530717958647693;
 constexpr double kLength = 3e-3;
 
 }  // namespace

@@ -4,15 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::simulation {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kMicro = 1e-6;
-constexpr double kMilli = 1e-3;
-constexpr double kDegree = kPi / 180.0;
-constexpr std::uint64_t kStream = 80, kRegistration = 81;  // of the seed
+constexpr std::uint64_t kTrackerStream = 80, kRegistrationStream = 81;  // of the seed
 
 Eigen::Vector2d normals(Random& random)
 {
@@ -22,7 +20,7 @@ Eigen::Vector2d normals(Random& random)
 
 Eigen::Vector2d anywhere(Random& random)
 {
-  const double angle = random.uniform(0.0, 2.0 * kPi);
+  const double angle = random.uniform(0.0, kTwoPi);
   return {std::cos(angle), std::sin(angle)};
 }
 
@@ -43,7 +41,7 @@ TrackerModel::TrackerModel(const CameraTimingOptions& timing, const TrackerModel
       latency_low_(timing.latency_low_ms * kMilli),
       latency_high_(timing.latency_high_ms * kMilli),
       period_s_(period_s),
-      random_(seed, kStream),
+      random_(seed, kTrackerStream),
       bias_{std::exp(-interval_ / errors.bias_s), errors.bias_um * kMicro, Eigen::Vector2d::Zero()},
       picture_{std::exp(-interval_ / registration.drift_s), registration.drift_um * kMicro, Eigen::Vector2d::Zero()},
       mid_exposure_(0.5 * exposure_ + interval_ * random_.uniform())
@@ -106,7 +104,7 @@ std::optional<TrackedFrame> TrackerModel::ready(double t_s)
 Eigen::Matrix<double, 2, 3> wrongRegistration(const RegistrationErrorOptions& options, std::uint64_t seed,
                                               const Eigen::Vector2d& centre)
 {
-  Random random(seed, kRegistration);
+  Random random(seed, kRegistrationStream);
   const double scale = 1.0 + (random.chance(0.5) ? 1.0 : -1.0) * options.scale;
   const double angle = (random.chance(0.5) ? 1.0 : -1.0) * options.rotation_deg * kDegree;
   Eigen::Matrix<double, 2, 3> map;

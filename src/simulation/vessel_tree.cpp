@@ -5,6 +5,7 @@
 #include <cmath>
 #include <deque>
 
+#include "eyeslam/retina/units.h"
 #include "eyeslam/simulation/random.h"
 
 namespace eyeslam::simulation {
@@ -14,7 +15,6 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kStep_um = 30.0;
-constexpr double kTwoPi = 6.28318530717958647693;
 constexpr int kMostVessels = 4000;
 
 Vector2d heading(double angle) { return {std::cos(angle), std::sin(angle)}; }

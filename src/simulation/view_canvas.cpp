@@ -3,11 +3,11 @@
 
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::simulation {
 
 namespace {
-
-constexpr double kTwoPi = 6.28318530717958647693;
 
 // Dots in a square grid: the finest that a magnified print shows (rendered sequences: 4.83 px).
 void printScreen(cv::Mat_<cv::Vec3f>& bgr, double strength)

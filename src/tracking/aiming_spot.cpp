@@ -14,11 +14,11 @@ using Eigen::Vector2d;
 
 constexpr double kViewWidth_px = 800.0;  // of the view that lengths are given for
 constexpr float kSaturated = 250.0F;     // redder cannot be told
-constexpr float kSteel = 0.4F;           // paler than that share of the red is no retina
+constexpr float kPaleShare = 0.4F;       // paler than that share of the red is no retina
 constexpr double kRingSigmas = 3.0;      // where the spot's light has ended
 constexpr double kMostRise = 1000.0;     // a saturated spot's top is guessed from its flanks
 constexpr double kLeastNoise = 2.0;      // grey levels
-constexpr double kLeastSigma_px = 0.25;
+constexpr double kLeastSpotSigma_px = 0.25;
 constexpr double kSettled_px = 0.03;  // a tenth of the error that is left
 
 struct Colour {
@@ -42,7 +42,7 @@ Colour colourAt(const cv::Mat& image, const Vector2d& at, float gain)
                                 : colourAt<std::uint16_t>(image, x, y, gain);
 }
 
-bool isRetina(const Colour& colour) { return colour.red > 25.0F && colour.pale < kSteel * colour.red; }
+bool isRetina(const Colour& colour) { return colour.red > 25.0F && colour.pale < kPaleShare * colour.red; }
 
 Vector2d directionOf(const ToolTip& tip) { return {std::cos(tip.shaft_angle), std::sin(tip.shaft_angle)}; }
 
@@ -119,7 +119,7 @@ void AimingSpotFinder::report(const Spot& spot, const Equations& equations)
 {
   const double variance = std::max(kLeastNoise * kLeastNoise, equations.squares / static_cast<double>(count_));
   const Eigen::Matrix2d formal = equations.normal.inverse().block<2, 2>(1, 1);
-  const double floor = kLeastSigma_px * unit_;
+  const double floor = kLeastSpotSigma_px * unit_;
   reach_ = kRingSigmas * spot.sigma;
   spot_.present = true;
   spot_.x_px = spot.centre.x();

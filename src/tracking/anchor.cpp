@@ -9,7 +9,7 @@ namespace eyeslam::tracking {
 namespace {
 
 constexpr double kFarthest_px = 3.0, kFarthestSmeared_px = 16.0;
-constexpr double kLeastNcc = 0.4;
+constexpr double kLeastAnchorNcc = 0.4;
 
 }  // namespace
 
@@ -44,7 +44,7 @@ void Anchor::startAgain(const MaskedContrast& frame, const Mosaic& mosaic, std::
   if (!rough) return;  // nothing better is known than that the view stood still
   motion_ = -rough->translation() / static_cast<double>(std::max<std::int64_t>(1, frames_since_start));
   const Refinement found = registerSmeared(mosaic, *rough);
-  goal_ = now_ = found.valid && found.ncc > kLeastNcc ? found.map_T_frame : *rough;
+  goal_ = now_ = found.valid && found.ncc > kLeastAnchorNcc ? found.map_T_frame : *rough;
 }
 
 void Anchor::update(const Mosaic& mosaic, std::int64_t frames_since_start)
@@ -69,7 +69,7 @@ void Anchor::registerStart(const Mosaic& mosaic)
   const Refinement found = smeared_ ? registerSmeared(mosaic, goal_) : registerSharp(mosaic);
   const double moved = (found.map_T_frame.translation() - goal_.translation()).norm();
   // The last registration is nearly right: a result far off is an error of this one.
-  if (found.valid && found.ncc >= kLeastNcc && moved < (smeared_ ? kFarthestSmeared_px : kFarthest_px))
+  if (found.valid && found.ncc >= kLeastAnchorNcc && moved < (smeared_ ? kFarthestSmeared_px : kFarthest_px))
     goal_ = found.map_T_frame;
 }
 

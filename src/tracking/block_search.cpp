@@ -15,9 +15,7 @@ constexpr int kBlock = MaxPooledTables::kBlock;
 constexpr int kSmall = MaxPooledTables::kSmallBlock;
 constexpr int kParts = 5;  // numbers of a large block: itself and its quarters
 constexpr std::uint32_t kUnit = MaxPooledTables::kBoundUnit;
-constexpr int kColumns = 16;       // of the summing kernel
-constexpr int kBoundColumns = 32;  // of the bounding kernel
-constexpr std::size_t kMostRivals = 256;
+constexpr std::size_t kMostKeptRivals = 256;
 
 int blocksFor(int poses) { return (poses + kBlock - 1) / kBlock; }
 int widthFor(int blocks) { return (blocks + kBoundColumns - 1) / kBoundColumns * kBoundColumns; }
@@ -29,7 +27,7 @@ void BlockSearch::reserve(int blocks, int points)
   bounds_.reserve(static_cast<std::size_t>(blocks));
   offsets_.reserve(static_cast<std::size_t>(points));
   heap_.reserve(4 * static_cast<std::size_t>(blocks));
-  rivals_.reserve(kMostRivals);
+  rivals_.reserve(kMostKeptRivals);
 }
 
 std::int64_t BlockSearch::operationsPerAngle(const PoseGrid& grid, int points)
@@ -162,14 +160,14 @@ void BlockSearch::split(const Block& block)
 {
   const GridPose first = firstPose(block);
   findOffsets(first);
-  std::array<std::uint32_t, 2 * kColumns> bounds;
+  std::array<std::uint32_t, 2 * kSumColumns> bounds;
   sumSixteenColumns(tables_->smallBounds(), tables_->stride() * kSmall, offsets_.data(), points_->size(), 2,
                     bounds.data());
   const bool has_right = first.i + kSmall <= grid_->half_i, has_lower = first.j + kSmall <= grid_->half_j;
   push({bounds[0], block.number + 1});
   if (has_right) push({bounds[kSmall], block.number + 2});
-  if (has_lower) push({bounds[kColumns], block.number + 3});
-  if (has_right && has_lower) push({bounds[kColumns + kSmall], block.number + 4});
+  if (has_lower) push({bounds[kSumColumns], block.number + 3});
+  if (has_right && has_lower) push({bounds[kSumColumns + kSmall], block.number + 4});
 }
 
 void BlockSearch::computeAll(const Block& block, int side)
@@ -177,12 +175,12 @@ void BlockSearch::computeAll(const Block& block, int side)
   const GridPose first = firstPose(block);
   findOffsets(first);
   const int columns = std::min(side, grid_->half_i + 1 - first.i), rows = std::min(side, grid_->half_j + 1 - first.j);
-  std::array<std::uint32_t, kBlock * kColumns> sums;
+  std::array<std::uint32_t, kBlock * kSumColumns> sums;
   sumSixteenColumns(tables_->cells(), tables_->stride(), offsets_.data(), points_->size(), rows, sums.data());
   GridPose best_here{first.k, first.j, first.i, sums[0]};
   for (int r = 0; r < rows; ++r) {
     for (int c = 0; c < columns; ++c) {
-      const GridPose pose{first.k, first.j + r, first.i + c, sums[static_cast<std::size_t>(r * kColumns + c)]};
+      const GridPose pose{first.k, first.j + r, first.i + c, sums[static_cast<std::size_t>(r * kSumColumns + c)]};
       if (isBetter(pose, best_here)) best_here = pose;
     }
   }
@@ -194,8 +192,8 @@ void BlockSearch::computeAll(const Block& block, int side)
 
 void BlockSearch::keepRival(const GridPose& pose)
 {
-  if (rivals_.size() == kMostRivals) dropRivalsFallenBehind();
-  if (rivals_.size() < kMostRivals) rivals_.push_back(pose);
+  if (rivals_.size() == kMostKeptRivals) dropRivalsFallenBehind();
+  if (rivals_.size() < kMostKeptRivals) rivals_.push_back(pose);
 }
 
 void BlockSearch::dropRivalsFallenBehind()

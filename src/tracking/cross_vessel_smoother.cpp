@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kWidestHalf = 10;  // of the average, frame px
 constexpr int kFarthest = 6 + kWidestHalf;
-using Profile = std::array<float, 2 * kFarthest + 1>;
+using CrossProfile = std::array<float, 2 * kFarthest + 1>;
 
 // Bilinear, inside the picture.
 inline float sample(const std::int16_t* pixels, std::ptrdiff_t row_step, float x, float y)
@@ -35,7 +35,8 @@ bool isInside(const cv::Mat& plane, const VesselPoint& point, float reach)
 }
 
 // Sums along the vessel, at whole offsets across it.
-void measure(const cv::Mat_<std::int16_t>& plane, const VesselPoint& point, int farthest, int along, Profile& profile)
+void measure(const cv::Mat_<std::int16_t>& plane, const VesselPoint& point, int farthest, int along,
+             CrossProfile& profile)
 {
   const float dx = std::cos(point.direction);
   const float dy = std::sin(point.direction);
@@ -52,7 +53,7 @@ void measure(const cv::Mat_<std::int16_t>& plane, const VesselPoint& point, int 
 }
 
 // Where the running average over 2 half + 1 offsets is least, by a parabola; none when that is at the end of the reach.
-std::optional<float> darkest(const Profile& profile, int half, int reach)
+std::optional<float> darkest(const CrossProfile& profile, int half, int reach)
 {
   const auto average = [&](int at) {
     float sum = 0.0F;
@@ -78,7 +79,7 @@ CrossVesselSmoother::CrossVesselSmoother(const CrossVesselSmootherOptions& optio
 
 void CrossVesselSmoother::smoothAcross(VesselPoints& points, const Frame& frame, const OcclusionMask& mask) const
 {
-  Profile profile;
+  CrossProfile profile;
   for (VesselPoint& point : points) {
     const auto width = static_cast<float>(options_.width_share) * point.calibre;
     const int half = std::clamp(static_cast<int>(std::lround(width / 2.0F)), 1, kWidestHalf);

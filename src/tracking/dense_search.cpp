@@ -12,23 +12,23 @@ namespace eyeslam::tracking {
 namespace {
 
 constexpr std::size_t kSums = 6;
-constexpr int kLanes = 8;
+constexpr int kRowLanes = 8;
 
 // Adds n, a, b, aa, bb, ab over one row of cells that both sides know, lane by lane.
 EYESLAM_VECTOR_KERNEL void correlateRow(const float* a, const float* a_known, const float* b, const float* b_known,
                                         int blocks, float* sums)
 {
   for (int i = 0; i < blocks; ++i) {
-    for (int k = 0; k < kLanes; ++k) {
-      const int at = i * kLanes + k;
+    for (int k = 0; k < kRowLanes; ++k) {
+      const int at = i * kRowLanes + k;
       const float w = a_known[at] * b_known[at];
       const float wa = w * a[at], wb = w * b[at];
       sums[k] += w;
-      sums[1 * kLanes + k] += wa;
-      sums[2 * kLanes + k] += wb;
-      sums[3 * kLanes + k] += wa * a[at];
-      sums[4 * kLanes + k] += wb * b[at];
-      sums[5 * kLanes + k] += wa * b[at];
+      sums[1 * kRowLanes + k] += wa;
+      sums[2 * kRowLanes + k] += wb;
+      sums[3 * kRowLanes + k] += wa * a[at];
+      sums[4 * kRowLanes + k] += wb * b[at];
+      sums[5 * kRowLanes + k] += wa * b[at];
     }
   }
 }
@@ -48,7 +48,7 @@ void DenseSearch::shrinkFrame(const MaskedContrast& frame, const retina::Pose2& 
 {
   // Columns in whole lanes; the cells beyond the view are unknown.
   const int rows = frame.height() / kCell;
-  const int columns = (frame.width() / kCell + kLanes - 1) / kLanes * kLanes;
+  const int columns = (frame.width() / kCell + kRowLanes - 1) / kRowLanes * kRowLanes;
   frame_mean_.create(rows, columns);
   frame_known_.create(rows, columns);
   const Eigen::Matrix2d linear = retina::Pose2{0.0, 0.0, around.theta, around.scale}.inverse().linear();
@@ -97,14 +97,14 @@ void DenseSearch::shrinkMosaic(const Mosaic& mosaic, const retina::Pose2& around
 
 float DenseSearch::correlate(int dx, int dy) const
 {
-  std::array<float, kSums * kLanes> sums{};
+  std::array<float, kSums * kRowLanes> sums{};
   for (int j = 0; j < frame_mean_.rows; ++j) {
     correlateRow(frame_mean_[j], frame_known_[j], mosaic_mean_[j + dy] + dx, mosaic_known_[j + dy] + dx,
-                 frame_mean_.cols / kLanes, sums.data());
+                 frame_mean_.cols / kRowLanes, sums.data());
   }
   std::array<double, kSums> s{};
   for (std::size_t i = 0; i < kSums; ++i) {
-    for (std::size_t k = 0; k < kLanes; ++k) s[i] += static_cast<double>(sums[i * kLanes + k]);
+    for (std::size_t k = 0; k < kRowLanes; ++k) s[i] += static_cast<double>(sums[i * kRowLanes + k]);
   }
   // Little overlap correlates by chance.
   const double least = 0.2 * static_cast<double>(frame_mean_.total());

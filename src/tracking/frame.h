@@ -42,6 +42,9 @@ class Frame {
   static constexpr int kCell = 4;
   /// `contrast()` of a pixel as bright as twice its background.
   static constexpr int kContrastUnit = 4096;
+  /// A cell whose red is no brighter lies outside the lit field and says nothing about the light; source: tracker study
+  /// 2.2.
+  static constexpr int kBlack = 25;
 
   explicit Frame(const FrameOptions& options = {});
 

@@ -13,8 +13,6 @@ namespace {
 
 constexpr int kBytesPerWord = 256;  // values up to 255 that a 16-bit sum holds
 constexpr int kBoundsPerByte = 15;  // bounds up to 16 that an 8-bit sum holds
-constexpr int kColumns = 16;
-constexpr int kBoundColumns = 32;
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "a word's lower byte is the left column");
 
 // Sums of sixteen bytes without widening them: eight words are added as they come, which makes even + 256 odd modulo
@@ -23,22 +21,22 @@ template <int kRows>
 [[gnu::always_inline]] inline void sumInWords(const std::uint8_t* table, std::ptrdiff_t stride,
                                               const std::int32_t* offsets, int count, std::uint32_t* sums)
 {
-  using Words [[gnu::vector_size(kColumns)]] = std::uint16_t;
+  using Words [[gnu::vector_size(kSumColumns)]] = std::uint16_t;
   Words both[kRows] = {}, odd[kRows] = {};
   for (int n = 0; n < count; ++n) {
     const std::uint8_t* row = table + offsets[n];
     for (int r = 0; r < kRows; ++r, row += stride) {
       Words words;
-      std::memcpy(&words, row, kColumns);
+      std::memcpy(&words, row, kSumColumns);
       both[r] += words;
       odd[r] += words >> 8;
     }
   }
   for (int r = 0; r < kRows; ++r) {
     const Words even = both[r] - (odd[r] << 8);
-    for (int c = 0; c < kColumns / 2; ++c) {
-      sums[r * kColumns + 2 * c] += even[c];
-      sums[r * kColumns + 2 * c + 1] += odd[r][c];
+    for (int c = 0; c < kSumColumns / 2; ++c) {
+      sums[r * kSumColumns + 2 * c] += even[c];
+      sums[r * kSumColumns + 2 * c + 1] += odd[r][c];
     }
   }
 }
@@ -47,7 +45,7 @@ template <int kRows>
 [[gnu::always_inline]] inline void sumRows(const std::uint8_t* table, std::ptrdiff_t stride,
                                            const std::int32_t* offsets, int count, std::uint32_t* sums)
 {
-  std::memset(sums, 0, kRows * kColumns * sizeof(*sums));
+  std::memset(sums, 0, kRows * kSumColumns * sizeof(*sums));
   for (int first = 0; first < count; first += kBytesPerWord) {
     sumInWords<kRows>(table, stride, offsets + first, std::min(kBytesPerWord, count - first), sums);
   }
@@ -71,9 +69,9 @@ void sumSixteenColumns(const std::uint8_t* table, std::ptrdiff_t stride, const s
                        int rows, std::uint32_t* sums)
 {
   int r = 0;
-  for (; r + 4 <= rows; r += 4) sumRows<4>(table + r * stride, stride, offsets, count, sums + r * kColumns);
-  for (; r + 3 <= rows; r += 3) sumRows<3>(table + r * stride, stride, offsets, count, sums + r * kColumns);
-  for (; r < rows; ++r) sumRows<1>(table + r * stride, stride, offsets, count, sums + r * kColumns);
+  for (; r + 4 <= rows; r += 4) sumRows<4>(table + r * stride, stride, offsets, count, sums + r * kSumColumns);
+  for (; r + 3 <= rows; r += 3) sumRows<3>(table + r * stride, stride, offsets, count, sums + r * kSumColumns);
+  for (; r < rows; ++r) sumRows<1>(table + r * stride, stride, offsets, count, sums + r * kSumColumns);
 }
 
 EYESLAM_VECTOR_KERNEL

@@ -8,6 +8,9 @@ namespace eyeslam::tracking {
 
 // The inner loops of scan matching, free of any notion but arrays, so that they can be compiled for wider vectors.
 
+inline constexpr int kSumColumns = 16;    ///< that sumSixteenColumns gives at once
+inline constexpr int kBoundColumns = 32;  ///< that sumBounds gives at once
+
 /// Turned and shifted points, floored: cell_x[n] = floor(c x[n] - s y[n] + tx), cell_y[n] = floor(s x[n] + c y[n] +
 /// ty).
 void floorTurned(const double* x, const double* y, int count, const double (&turn)[4], std::int32_t* cell_x,

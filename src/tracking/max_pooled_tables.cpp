@@ -13,7 +13,7 @@ constexpr int kRightMargin = 16;  // a kernel reads sixteen columns at once
 constexpr int kBoundMargin = 64;  // and thirty-two bounds, the last of them past the planes' end
 
 std::ptrdiff_t strideFor(int width) { return (width + kRightMargin + 15) / 16 * 16; }
-std::ptrdiff_t blocksFor(int cells) { return (cells + MaxPooledTables::kBlock - 1) / MaxPooledTables::kBlock; }
+std::ptrdiff_t blocksAlong(int cells) { return (cells + MaxPooledTables::kBlock - 1) / MaxPooledTables::kBlock; }
 std::size_t length(std::ptrdiff_t count) { return static_cast<std::size_t>(count); }
 
 std::size_t cellBytes(const cv::Size& size)
@@ -24,7 +24,7 @@ std::size_t cellBytes(const cv::Size& size)
 std::size_t boundBytes(const cv::Size& size)
 {
   constexpr int kPlanes = MaxPooledTables::kBlock * MaxPooledTables::kBlock;
-  return length(kPlanes * blocksFor(size.width) * blocksFor(size.height) + kBoundMargin);
+  return length(kPlanes * blocksAlong(size.width) * blocksAlong(size.height) + kBoundMargin);
 }
 
 }  // namespace
@@ -42,8 +42,8 @@ void MaxPooledTables::resize(const cv::Size& size)
 {
   size_ = size;
   stride_ = strideFor(size.width);
-  bound_stride_ = blocksFor(size.width);
-  plane_size_ = bound_stride_ * blocksFor(size.height);
+  bound_stride_ = blocksAlong(size.width);
+  plane_size_ = bound_stride_ * blocksAlong(size.height);
   cells_.assign(cellBytes(size), 0);
 }
 

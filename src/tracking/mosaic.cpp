@@ -12,8 +12,6 @@ namespace eyeslam::tracking {
 
 namespace {
 
-constexpr int kTile = Mosaic::kTile;
-
 // The part of [from, to] in which start + i step lies in [lowest, highest].
 void clip(double start, double step, double lowest, double highest, double& from, double& to)
 {
@@ -40,6 +38,7 @@ EYESLAM_VECTOR_KERNEL void roundRow(const float* values, int count, std::int16_t
 EYESLAM_VECTOR_KERNEL void gradientRow(const float* above, const float* middle, const float* below,
                                        const std::uint8_t* counts, int stride, float* gx, float* gy, float* strength)
 {
+  constexpr int kTile = Mosaic::kTile;
   constexpr float kEighth = 0.125F;
   for (int i = 0; i < kTile; ++i) {
     const float dx = (above[i + 2] - above[i]) + 2.0F * (middle[i + 2] - middle[i]) + (below[i + 2] - below[i]);

@@ -11,8 +11,6 @@ namespace eyeslam::tracking {
 
 namespace {
 
-constexpr int kBlack = 25;  // red below it says nothing about the light; source: tracker study 2.2
-
 // The level below which half of the cells lie that are not black; 0 when all are black.
 int medianAboveBlack(const cv::Mat_<std::uint8_t>& cells)
 {
@@ -20,12 +18,12 @@ int medianAboveBlack(const cv::Mat_<std::uint8_t>& cells)
   int total = 0;
   for (int y = 0; y < cells.rows; ++y) {
     for (int x = 0; x < cells.cols; ++x) {
-      if (cells(y, x) <= kBlack) continue;
+      if (cells(y, x) <= Frame::kBlack) continue;
       ++histogram[cells(y, x)];
       ++total;
     }
   }
-  int level = kBlack;
+  int level = Frame::kBlack;
   for (int below = 0; total > 0 && 2 * below < total; ++level) below += histogram[static_cast<std::size_t>(level) + 1];
   return total > 0 ? level : 0;
 }
@@ -48,7 +46,7 @@ void OcclusionMask::update(const Frame& frame)
   for (int y = 0; y < red.rows; ++y) {
     for (int x = 0; x < red.cols; ++x) {
       const bool bright = frame.isGrey() ? red(y, x) > bright_grey : blue(y, x) > options_.bright_blue * red(y, x);
-      const bool dark = red(y, x) < rim || red(y, x) <= kBlack;
+      const bool dark = red(y, x) < rim || red(y, x) <= Frame::kBlack;
       bright_(y, x) = bright && !dark ? 1 : 0;
       rough_(y, x) = static_cast<std::uint8_t>((dark ? kRim : kVisible) | (bright ? kBright : kVisible));
     }

@@ -9,19 +9,21 @@ namespace eyeslam::tracking {
 
 namespace {
 
-constexpr int kTile = OccupancyMap::kTile;
+constexpr int kCellTile = OccupancyMap::kTile;
 
 int floorModulo(int a, int b) { return a - b * floorDivide(a, b); }
 // Cells are counted from far outside the reach, so that unsigned division, a shift, rounds down.
-constexpr unsigned kOffset = 2 * OccupancyMap::kReach_cells;
-static_assert(kOffset % kTile == 0);
+constexpr unsigned kFarOutside = 2 * OccupancyMap::kReach_cells;
+static_assert(kFarOutside % kCellTile == 0);
 int tileOf(int cell)
 {
-  return static_cast<int>((static_cast<unsigned>(cell) + kOffset) / kTile) - static_cast<int>(kOffset / kTile);
+  return static_cast<int>((static_cast<unsigned>(cell) + kFarOutside) / kCellTile) -
+         static_cast<int>(kFarOutside / kCellTile);
 }
 std::size_t indexInTile(int i, int j)
 {
-  return ((static_cast<unsigned>(j) + kOffset) % kTile) * kTile + (static_cast<unsigned>(i) + kOffset) % kTile;
+  return ((static_cast<unsigned>(j) + kFarOutside) % kCellTile) * kCellTile +
+         (static_cast<unsigned>(i) + kFarOutside) % kCellTile;
 }
 
 bool withinReach(double i, double j)

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "eyeslam/retina/units.h"
+#include "eyeslam/tracking/sub_pixel.h"
 #include "eyeslam/tracking/view_geometry.h"
 
 namespace eyeslam::tracking {
@@ -17,21 +19,19 @@ namespace {
 const cv::Scalar kGround(26, 22, 20), kGutter(12, 10, 9), kInk(236, 236, 236), kQuiet(170, 166, 160);
 const cv::Scalar kPoint(120, 255, 120), kView(255, 255, 255), kTrail(80, 220, 255), kTool(255, 200, 60);
 const cv::Scalar kGood(120, 220, 120), kBad(90, 90, 255);
-constexpr int kGap = 4;           // px between panels
-constexpr int kStatus = 30;       // px of the line below
-constexpr int kFixed = 4;         // bits of sub-pixel coordinates in OpenCV's drawing
-constexpr double kMargin = 0.04;  // of the seen area, around it
-
-cv::Point fixed(cv::Point2d at) { return {cvRound(at.x * (1 << kFixed)), cvRound(at.y * (1 << kFixed))}; }
+constexpr int kPanelGap = 4;          // px between panels
+constexpr int kStatus = 30;           // px of the line below
+constexpr double kViewMargin = 0.04;  // of the seen area, around it
 
 void line(cv::Mat& picture, cv::Point2d from, cv::Point2d to, const cv::Scalar& colour, int thickness = 1)
 {
-  cv::line(picture, fixed(from), fixed(to), colour, thickness, cv::LINE_AA, kFixed);
+  cv::line(picture, inSubPixels(from), inSubPixels(to), colour, thickness, cv::LINE_AA, kSubPixelBits);
 }
 
 void ring(cv::Mat& picture, cv::Point2d centre, double radius, const cv::Scalar& colour, int thickness = 1)
 {
-  cv::circle(picture, fixed(centre), cvRound(radius * (1 << kFixed)), colour, thickness, cv::LINE_AA, kFixed);
+  cv::circle(picture, inSubPixels(centre), cvRound(radius * (1 << kSubPixelBits)), colour, thickness, cv::LINE_AA,
+             kSubPixelBits);
 }
 
 /// Text on a dark plate in the top left corner.
@@ -77,7 +77,7 @@ const cv::Mat& Overlay::draw(const OverlayScene& scene)
   follow(scene);
   toColour(scene.frame, panel_, small_);
   const auto panel = [this](int column, int row) {
-    return canvas_(cv::Rect({column * (panel_.width + kGap), row * (panel_.height + kGap)}, panel_));
+    return canvas_(cv::Rect({column * (panel_.width + kPanelGap), row * (panel_.height + kPanelGap)}, panel_));
   };
   drawDetections(scene, panel(0, 0));
   drawMap(scene, panel(1, 0));
@@ -94,7 +94,7 @@ void Overlay::layOut(cv::Size frame)
       std::min<double>(options_.panel_width, std::max(frame.width / 2.0, std::min(frame.width, 320) * 1.0));
   panel_ = {even(width), even(width * frame.height / frame.width)};
   panel_per_px_ = static_cast<double>(panel_.width) / frame.width;
-  canvas_.create(2 * panel_.height + kGap + kStatus, 2 * panel_.width + kGap, CV_8UC3);
+  canvas_.create(2 * panel_.height + kPanelGap + kStatus, 2 * panel_.width + kPanelGap, CV_8UC3);
   canvas_.setTo(kGutter);
   seen_ = {};
   trail_.clear();
@@ -115,7 +115,7 @@ void Overlay::follow(const OverlayScene& scene)
 // Map and mosaic are shown alike: all that was seen so far fits into the panel.
 cv::Matx23d Overlay::panelFromMap() const
 {
-  const double scale = std::min(panel_.width / seen_.width, panel_.height / seen_.height) * (1.0 - 2.0 * kMargin);
+  const double scale = std::min(panel_.width / seen_.width, panel_.height / seen_.height) * (1.0 - 2.0 * kViewMargin);
   const cv::Point2d middle = (seen_.tl() + seen_.br()) / 2.0;
   return {scale, 0.0,   (panel_.width - 1) / 2.0 - scale * middle.x,
           0.0,   scale, (panel_.height - 1) / 2.0 - scale * middle.y};
@@ -198,7 +198,7 @@ void Overlay::drawInstrument(const ToolTip& tip, cv::Mat& panel) const
     line(panel, at - 4.0 * half * along + side * across, at - 40.0 * half * along + side * across, kTool);
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> spread(tip.covariance);
-  const double turn = std::atan2(spread.eigenvectors()(1, 1), spread.eigenvectors()(0, 1)) * 180.0 / CV_PI;
+  const double turn = std::atan2(spread.eigenvectors()(1, 1), spread.eigenvectors()(0, 1)) * 180.0 / kPi;
   const auto radius = [&](int i) {
     return std::max(5.0, 3.0 * panel_per_px_ * std::sqrt(std::max(0.0, spread.eigenvalues()(i))));
   };
@@ -237,7 +237,7 @@ void Overlay::writeStatus(const OverlayScene& scene, cv::Mat strip) const
   const std::string state = result.tracked ? "tracked" : fmt::format("lost: {}", retina::word(result.reason));
   const std::string place =
       fmt::format("frame {}   {:.2f} s   x {:+.1f}  y {:+.1f} px   turn {:+.2f} deg", result.frame, scene.time_s,
-                  result.map_T_frame.x, result.map_T_frame.y, result.map_T_frame.theta * 180.0 / CV_PI);
+                  result.map_T_frame.x, result.map_T_frame.y, result.map_T_frame.theta * 180.0 / kPi);
   const double size = std::min(0.45, 0.45 * strip.cols / 560.0);
   cv::circle(strip, {14, kStatus / 2}, 4, result.tracked ? kGood : kBad, -1, cv::LINE_AA);
   cv::putText(strip, state, {26, 20}, cv::FONT_HERSHEY_SIMPLEX, size, result.tracked ? kInk : kBad, 1, cv::LINE_AA);

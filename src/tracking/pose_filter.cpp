@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::tracking {
 
 namespace {
@@ -13,13 +15,12 @@ namespace {
 using retina::Pose2;
 using retina::wrapAngle;
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr double kStartSpeed = 3.0;  // sigma of an unknown velocity, in accelerations times a frame
 
 // Sigmas between which everything stays: below, rounding would make a covariance indefinite; above, nothing is known
 // anyway, and a view lost for hours must not overflow.
 constexpr double kLeast_px = 1e-4, kLeast_rad = 1e-6;
-constexpr double kMost_px = 2000.0, kMost_rad = M_PI;
+constexpr double kMost_px = 2000.0, kMost_rad = kPi;
 constexpr double kMostSpeed_px = 500.0, kMostSpeed_rad = 0.5;
 
 bool isFinite(const PoseEstimate& estimate)

@@ -10,9 +10,9 @@ namespace eyeslam::tracking {
 
 namespace {
 
-constexpr int kBlock = MapVesselDetector::kBlock;
+constexpr int kMapBlock = MapVesselDetector::kBlock;
 constexpr int kSeenStep = 4;  // cells: views are counted for squares of them
-static_assert(kBlock % Mosaic::kTile == 0 && kBlock % kSeenStep == 0);
+static_assert(kMapBlock % Mosaic::kTile == 0 && kMapBlock % kSeenStep == 0);
 
 std::uint32_t rowsBlended(const Mosaic& mosaic, const cv::Rect& region)
 {
@@ -28,9 +28,9 @@ std::uint32_t rowsBlended(const Mosaic& mosaic, const cv::Rect& region)
 
 cv::Rect wholeBlocks(const cv::Rect& cells)
 {
-  const cv::Point from(floorDivide(cells.x, kBlock), floorDivide(cells.y, kBlock));
-  const cv::Point to(floorDivide(cells.br().x - 1, kBlock) + 1, floorDivide(cells.br().y - 1, kBlock) + 1);
-  return {from * kBlock, to * kBlock};
+  const cv::Point from(floorDivide(cells.x, kMapBlock), floorDivide(cells.y, kMapBlock));
+  const cv::Point to(floorDivide(cells.br().x - 1, kMapBlock) + 1, floorDivide(cells.br().y - 1, kMapBlock) + 1);
+  return {from * kMapBlock, to * kMapBlock};
 }
 
 template <class Value>
@@ -57,7 +57,7 @@ void enlarge(cv::Mat_<Value>& grid, const cv::Rect& from, const cv::Rect& to, Va
 cv::Range limited(const cv::Range& there, const cv::Range& wanted)
 {
   constexpr int kMost = PublishedMap::kLargestSide;
-  static_assert(kMost % kBlock == 0);
+  static_assert(kMost % kMapBlock == 0);
   if (wanted.size() <= kMost) return wanted;
   if (there.empty()) return {wanted.start, wanted.start + kMost};
   const int start = std::max(wanted.start, there.end - kMost);
@@ -66,7 +66,8 @@ cv::Range limited(const cv::Range& there, const cv::Range& wanted)
 
 cv::Rect inBlocks(const cv::Rect& cells)
 {
-  return {floorDivide(cells.x, kBlock), floorDivide(cells.y, kBlock), cells.width / kBlock, cells.height / kBlock};
+  return {floorDivide(cells.x, kMapBlock), floorDivide(cells.y, kMapBlock), cells.width / kMapBlock,
+          cells.height / kMapBlock};
 }
 
 }  // namespace
@@ -140,8 +141,8 @@ void PublishedMap::observe(const OcclusionMask& mask, const cv::Size& frame, con
 
 PublishedMap::BlockState& PublishedMap::state(const cv::Point& at)
 {
-  return states_[static_cast<std::size_t>((at.y - floorDivide(cells_.y, kBlock)) * (cells_.width / kBlock) + at.x -
-                                          floorDivide(cells_.x, kBlock))];
+  return states_[static_cast<std::size_t>((at.y - floorDivide(cells_.y, kMapBlock)) * (cells_.width / kMapBlock) +
+                                          at.x - floorDivide(cells_.x, kMapBlock))];
 }
 
 const PublishedMap::BlockState& PublishedMap::state(const cv::Point& at) const
@@ -177,7 +178,7 @@ double PublishedMap::urgency(const Mosaic& mosaic, const cv::Point& at) const
   const std::uint32_t rows = rowsBlended(mosaic, MapVesselDetector::block(at)) - then.rows;
   if (rows == 0) return 0.0;
   const BlockState now = stateNow(mosaic, at);
-  constexpr double kArea = kBlock * kBlock;
+  constexpr double kArea = kMapBlock * kMapBlock;
   // A strip at the end of what was seen counts by its own size, or vessels there would wait for long.
   const double area = (now.known - then.known) / (options_.renewal_area * std::max<double>(then.known, kArea / 4.0));
   if (!then.looked_at) return 1e6 + area;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "eyeslam/retina/units.h"
 #include "eyeslam/tracking/block_search.h"
 #include "eyeslam/tracking/scan_matcher.h"
 #include "eyeslam/tracking/turned_points.h"
@@ -19,14 +20,13 @@ using retina::Reason;
 
 constexpr double kMostRadius_cells = 64.0;  // of the view: larger cells, and so fewer angles, for larger views
 constexpr double kShareOutside = 0.25;      // of the view's radius, by which its centre may leave the known rectangle
-constexpr int kPeak = 8;                    // cells or steps: two poses closer than this are one place
+constexpr int kWholeMapPeak = 8;            // cells or steps: two poses closer than this are one place
 constexpr std::size_t kMostPlaces = 4;      // found again among the map's own cells
 constexpr double kCoarseLoss = 0.95;        // a rival may score so much less on larger cells than it deserves
 constexpr double kSlack = 1.1;              // by which a scale over 1 may enlarge the view
 constexpr double kBoundShare = 0.3;         // of the budget, for bounding; the rest opens blocks
 constexpr double kCachedCells = 750e3;      // tables so large are read at full speed, larger ones slower in proportion
 constexpr int kMostNarrowing = 64;
-constexpr double kRadiansPerDegree = M_PI / 180.0;
 
 bool isUsable(const Pose2& pose)
 {
@@ -45,7 +45,7 @@ ScanMatcherOptions matcherOptions(const RelocalizerOptions& options)
 
 bool isOnePlace(const GridPose& a, const GridPose& b)
 {
-  return std::max({std::abs(a.k - b.k), std::abs(a.j - b.j), std::abs(a.i - b.i)}) <= kPeak;
+  return std::max({std::abs(a.k - b.k), std::abs(a.j - b.j), std::abs(a.i - b.i)}) <= kWholeMapPeak;
 }
 
 /// Number of the nth sector from the middle outwards: middle, right, left, ...
@@ -153,7 +153,7 @@ void Relocalizer::Steps::layGrid(const OccupancyMap& map, const Pose2& last_pose
   grid_.theta_step = points_.stepFor(cell_px_, last_pose.scale);
   grid_.half_i = known.width / (2 * reduction_) + outside;
   grid_.half_j = known.height / (2 * reduction_) + outside;
-  const double half_angle = std::min(options_.half_angle_deg * kRadiansPerDegree, M_PI);
+  const double half_angle = std::min(options_.half_angle_deg * kDegree, kPi);
   grid_.half_k = static_cast<int>(std::ceil(half_angle / grid_.theta_step));
 }
 

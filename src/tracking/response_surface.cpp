@@ -8,12 +8,6 @@
 
 namespace eyeslam::tracking {
 
-namespace {
-
-constexpr int kColumns = 16;  // of the kernel
-
-}  // namespace
-
 PoseBox PoseBox::around(const GridPose& pose, const PoseGrid& grid, int steps, int cells)
 {
   return {std::max(pose.k - steps, -grid.half_k), std::min(pose.k + steps, grid.half_k),
@@ -33,9 +27,9 @@ void ResponseSurface::evaluate(const TurnedPoints& points, const MaxPooledTables
 {
   box_ = box;
   const int rows = box.j1 - box.j0 + 1;
-  width_ = (box.i1 - box.i0 + kColumns) / kColumns * kColumns;
+  width_ = (box.i1 - box.i0 + kSumColumns) / kSumColumns * kSumColumns;
   sums_.resize(static_cast<std::size_t>((box.k1 - box.k0 + 1) * rows * width_));
-  columns_.resize(static_cast<std::size_t>(rows * kColumns));
+  columns_.resize(static_cast<std::size_t>(rows * kSumColumns));
   offsets_.resize(static_cast<std::size_t>(points.size()));
   const int stride = static_cast<int>(tables.stride());
   std::uint32_t* first = sums_.data();
@@ -43,10 +37,10 @@ void ResponseSurface::evaluate(const TurnedPoints& points, const MaxPooledTables
     for (std::size_t n = 0; n < offsets_.size(); ++n) {
       offsets_[n] = (points.cellY(k)[n] + box.j0 - origin.y) * stride + points.cellX(k)[n] + box.i0 - origin.x;
     }
-    for (int column = 0; column < width_; column += kColumns) {
+    for (int column = 0; column < width_; column += kSumColumns) {
       sumSixteenColumns(tables.cells() + column, stride, offsets_.data(), points.size(), rows, columns_.data());
       for (int r = 0; r < rows; ++r) {
-        std::copy_n(columns_.data() + r * kColumns, kColumns, first + r * width_ + column);
+        std::copy_n(columns_.data() + r * kSumColumns, kSumColumns, first + r * width_ + column);
       }
     }
   }

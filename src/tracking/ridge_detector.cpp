@@ -17,7 +17,7 @@ struct Step {
 };
 constexpr int kDirections = 4;
 constexpr int kDistances = 3;
-constexpr int kMargin = 5;
+constexpr int kBorder = 5;
 // Where the flanks lie, in half-frame px: 2, 3 and 5 away (rounded on the diagonals), across vessels that run
 // up-down, along the falling diagonal's normal, left-right, along the rising diagonal's normal.
 constexpr std::array<std::array<Step, kDistances>, kDirections> kFlanks = {{
@@ -78,13 +78,13 @@ void RidgeDetector::shrink(const Frame& frame)
 void RidgeDetector::respond()
 {
   for (int y = 0; y < response_.rows; ++y) std::fill_n(response_[y], response_.cols, 0);  // setTo would allocate
-  const int count = smooth_.cols - 2 * kMargin;
-  for (int y = kMargin; y < smooth_.rows - kMargin; ++y) {
+  const int count = smooth_.cols - 2 * kBorder;
+  for (int y = kBorder; y < smooth_.rows - kBorder; ++y) {
     for (int direction = 0; direction < kDirections; ++direction) {
       for (const Step& step : kFlanks[static_cast<std::size_t>(direction)]) {
-        ridgeRow(smooth_[y] + kMargin, smooth_[y + step.dy] + kMargin + step.dx,
-                 smooth_[y - step.dy] + kMargin - step.dx, count, static_cast<std::int16_t>(direction),
-                 response_[y] + kMargin, direction_[y] + kMargin);
+        ridgeRow(smooth_[y] + kBorder, smooth_[y + step.dy] + kBorder + step.dx,
+                 smooth_[y - step.dy] + kBorder - step.dx, count, static_cast<std::int16_t>(direction),
+                 response_[y] + kBorder, direction_[y] + kBorder);
       }
     }
   }
@@ -93,9 +93,9 @@ void RidgeDetector::respond()
 void RidgeDetector::collect(const OcclusionMask& mask, VesselPoints& points) const
 {
   constexpr auto kUnit = static_cast<float>(Frame::kContrastUnit);
-  for (int y = kMargin; y < response_.rows - kMargin; ++y) {
+  for (int y = kBorder; y < response_.rows - kBorder; ++y) {
     const std::int16_t* row = response_[y];
-    for (int x = kMargin; x < response_.cols - kMargin; ++x) {
+    for (int x = kBorder; x < response_.cols - kBorder; ++x) {
       if (row[x] < threshold_ || !mask.isVisible(2 * x, 2 * y)) continue;
       const Step across = kAcross[static_cast<std::size_t>(direction_(y, x))];
       const int before = smooth_(y - across.dy, x - across.dx);

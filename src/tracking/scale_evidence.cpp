@@ -8,7 +8,7 @@ namespace eyeslam::tracking {
 namespace {
 
 constexpr double kLeastShare = 0.4;  // of the first frame's pixels in view; fewer do not fix a scale well
-constexpr double kLeastNcc = 0.4;
+constexpr double kLeastScaleNcc = 0.4;
 
 }  // namespace
 
@@ -35,7 +35,7 @@ bool ScaleEvidence::update(const MaskedContrast& frame, const Mosaic& mosaic, co
     collectTemplate(mosaic, frame, map_T_frame, seen_);
   }
   const Refinement found = refiner_.refine(frame.contrast, seen_, map_T_frame, Freedom::similarity);
-  if (!found.valid || found.ncc < kLeastNcc) return false;
+  if (!found.valid || found.ncc < kLeastScaleNcc) return false;
   const double change = found.map_T_frame.scale - 1.0;
   const bool significant = std::abs(change) > options_.least_change &&
                            std::abs(change) > options_.sigmas * std::sqrt(found.covariance(3, 3));

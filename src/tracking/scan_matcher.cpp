@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "eyeslam/retina/units.h"
 #include "eyeslam/tracking/block_search.h"
 #include "eyeslam/tracking/max_pooled_tables.h"
 #include "eyeslam/tracking/response_surface.h"
@@ -17,15 +18,15 @@ namespace {
 using retina::Pose2;
 using retina::Reason;
 
-constexpr int kMostPoints = 4000;
+constexpr int kMostMatched = 4000;
 constexpr std::int64_t kMostCells = 1 << 24;
 constexpr int kMostHalf = 500;         // cells or steps each way
 constexpr int kRowsComputedAll = 200;  // rows of 16 poses; up to here computing all is faster than bounding
 constexpr int kSurfaceCells = 10;      // around the best of a larger window: more than a block, so that no rival hides
 constexpr int kSurfaceSteps = 3;
 constexpr int kMostSurface = (2 * kSurfaceCells + 1) * 32 * (2 * kSurfaceSteps + 1);  // poses, rows in whole kernels
-constexpr int kPeak = 3;  // cells or steps: two poses closer than this are one place
-constexpr int kMostRivals = 32;
+constexpr int kWindowPeak = 3;  // cells or steps: two poses closer than this are one place
+constexpr int kMostJudgedRivals = 32;
 constexpr double kMostMagnified = 10.0;  // a scale beyond is no view of the retina
 
 int halfFor(double half, double step, int least, int most)
@@ -46,7 +47,7 @@ bool isUsable(const Pose2& pose, double cell_px)
 
 bool isFarFrom(const GridPose& a, const GridPose& b)
 {
-  return std::max({std::abs(a.k - b.k), std::abs(a.j - b.j), std::abs(a.i - b.i)}) > kPeak;
+  return std::max({std::abs(a.k - b.k), std::abs(a.j - b.j), std::abs(a.i - b.i)}) > kWindowPeak;
 }
 
 }  // namespace
@@ -100,7 +101,7 @@ bool ScanMatcher::Steps::begin(const ScanPoints& points, const OccupancyMap& map
   result.map_T_frame = centre;
   result.reason = Reason::poor_match;
   if (!isUsable(centre, map.cellSize())) return false;
-  points_.assign(points, kMostPoints);
+  points_.assign(points, kMostMatched);
   result.reason = Reason::too_few_points;
   if (points_.size() < std::max(1, options_.min_points)) return false;
   grid_.centre = centre;
@@ -124,7 +125,7 @@ void ScanMatcher::Steps::widenTo(const SearchWindow& window)
 {
   grid_.half_i = halfFor(window.half_x_px, grid_.cell_px, 0, kMostHalf);
   grid_.half_j = halfFor(window.half_y_px, grid_.cell_px, 0, kMostHalf);
-  const int half_turn = static_cast<int>(M_PI / grid_.theta_step);
+  const int half_turn = static_cast<int>(kPi / grid_.theta_step);
   grid_.half_k = halfFor(window.half_theta, grid_.theta_step, 0, std::min(half_turn, kMostHalf));
 }
 
@@ -198,7 +199,7 @@ bool ScanMatcher::Steps::hasRival(const GridPose& best)
   const auto is_same = [&](const GridPose& pose) { return !isFarFrom(pose, best); };
   rivals_.erase(std::remove_if(rivals_.begin(), rivals_.end(), is_same), rivals_.end());
   const auto judged =
-      rivals_.begin() + std::min<std::ptrdiff_t>(kMostRivals, std::distance(rivals_.begin(), rivals_.end()));
+      rivals_.begin() + std::min<std::ptrdiff_t>(kMostJudgedRivals, std::distance(rivals_.begin(), rivals_.end()));
   std::partial_sort(rivals_.begin(), judged, rivals_.end(), isBetter);
   return std::any_of(rivals_.begin(), judged, [&](const GridPose& rival) { return separatedByValley(rival, best); });
 }

@@ -13,13 +13,13 @@ namespace {
 constexpr int kSections = 20;
 constexpr std::size_t kLeastSections = 5;
 constexpr double kLongest_widths = 16.0;  // farther back the light fades
-constexpr double kStride = 2.5;           // steps of the coarse look for an edge
-constexpr float kSteel = 0.75F;           // blue of the red in the middle of a section; a pale disc has 0.65
+constexpr double kEdgeStride = 2.5;       // steps of the coarse look for an edge
+constexpr float kSteelShare = 0.75F;      // blue of the red in the middle of a section; a pale disc has 0.65
 constexpr double kBulge = 1.3;            // wider than this, of the median: a bloom lies on the shaft
 constexpr double kBeyond_px = 8.0;        // the rough width lacks the mixed cells on both sides
 constexpr double kLeastWeight = 2.5;      // of sections, a whole one where the shaft has its full width
 constexpr double kCut_sigma = 3.0;
-constexpr double kLeastSigma_px = 0.4;  // edges are not better known: chroma is sampled every other px
+constexpr double kLeastEdgeSigma_px = 0.4;  // edges are not better known: chroma is sampled every other px
 
 double quantile(std::vector<double>& values, double part)
 {
@@ -67,7 +67,7 @@ void ShaftEdges::measure(const TintSampler& image, const ShaftAxis& rough, doubl
   sections_.clear();
   const double step = std::min(length, kLongest_widths * rough.width) / kSections;
   const double farthest = rough.width + kBeyond_px;
-  const float steel = image.hasColour() ? std::max(kSteel, share_) : share_;  // brightness has one threshold only
+  const float steel = image.hasColour() ? std::max(kSteelShare, share_) : share_;  // brightness has one threshold only
   for (int i = 0; i < kSections; ++i) {
     const double along = -(i + 0.5) * step;
     const Eigen::Vector2d from = rough.at(along);
@@ -84,13 +84,13 @@ double ShaftEdges::edge(const TintSampler& image, const Eigen::Vector2d& from, c
   const double step = std::max(1.0, farthest / 40.0);  // about a px of the usual shaft
   const auto profile = [&](double along) { return image(from + along * outwards); };
   double before = 1.0;
-  for (double distance = kStride * step; distance < farthest; distance += kStride * step) {
+  for (double distance = kEdgeStride * step; distance < farthest; distance += kEdgeStride * step) {
     if (!image.contains(from + distance * outwards)) return farthest;  // cut off by the picture: no middle
     const Tint tint = profile(distance);
     if (tint.blue > bloom_) return farthest;
     const double excess = tint.excess(share_);
     if (excess <= 0.0) {
-      const double rough = distance + kStride * step * excess / (before - excess);
+      const double rough = distance + kEdgeStride * step * excess / (before - excess);
       const std::optional<SteelEnd> end = sharpenSteelEnd(profile, rough, step);
       return end ? end->at : rough;
     }
@@ -124,7 +124,7 @@ ShaftEdges::Trend ShaftEdges::robustTrend()
   for (const Section& section : sections_) slopes_.push_back(section.middle - trend.slope * section.along);
   trend.offset = quantile(slopes_, 0.5);
   for (double& residual : slopes_) residual = std::abs(residual - trend.offset);
-  trend.sigma = std::max(1.48 * quantile(slopes_, 0.5), kLeastSigma_px);
+  trend.sigma = std::max(1.48 * quantile(slopes_, 0.5), kLeastEdgeSigma_px);
   return trend;
 }
 
@@ -146,7 +146,7 @@ std::optional<ShaftAxis> ShaftEdges::fit(const ShaftAxis& rough, double width)
   axis.origin = rough.at(0.0, line.offset());
   axis.direction = (rough.direction + line.slope() * rough.normal()).normalized();
   axis.width = width;
-  const double variance = std::max(squares / line.n, kLeastSigma_px * kLeastSigma_px);
+  const double variance = std::max(squares / line.n, kLeastEdgeSigma_px * kLeastEdgeSigma_px);
   axis.variance = variance * line.xx / line.determinant();
   return axis;
 }

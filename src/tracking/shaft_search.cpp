@@ -10,7 +10,6 @@ namespace eyeslam::tracking {
 
 namespace {
 
-constexpr int kBlack = 25;            // red below it is outside the lit field; source: tracker study 2.2
 constexpr double kLeastLevel = 0.08;  // of the median red: darker cells have no colour, only noise
 constexpr int kLeastBlue = 12;
 constexpr int kNear = 2;  // cells between the region and the outside: the field's edge is soft
@@ -31,7 +30,7 @@ EYESLAM_VECTOR_KERNEL void classifyRow(const std::uint8_t* red, const std::uint8
 {
   for (int i = 0; i < count; ++i) {
     const bool steel = 256 * blue[i] > levels.share * red[i] && blue[i] > levels.least;
-    const bool outside = red[i] <= kBlack;
+    const bool outside = red[i] <= Frame::kBlack;
     kinds[i] = static_cast<std::uint8_t>(steel     ? ShaftSearch::kTool
                                          : outside ? ShaftSearch::kOutside
                                                    : ShaftSearch::kRetina);

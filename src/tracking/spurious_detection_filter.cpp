@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
 #include "eyeslam/retina/vector_kernel.h"
 #include "eyeslam/tracking/cell_growth.h"
 
@@ -118,7 +119,7 @@ bool SpuriousDetectionFilter::runsAlongBrightEdge(const VesselPoint& point, cons
   const double distance = std::hypot(sum_x, sum_y);
   if (distance == 0.0) return false;
   const double towards = (std::cos(point.direction) * sum_x + std::sin(point.direction) * sum_y) / distance;
-  return std::abs(towards) < std::sin(options_.instrument_angle_deg * CV_PI / 180.0);
+  return std::abs(towards) < std::sin(options_.instrument_angle_deg * kPi / 180.0);
 }
 
 }  // namespace eyeslam::tracking

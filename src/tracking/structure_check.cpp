@@ -7,9 +7,9 @@ namespace eyeslam::tracking {
 
 namespace {
 
-constexpr int kSmall = 2, kMiddle = 4, kLarge = 8;  // cells along an area
-constexpr int kFewest = 4;                          // areas, of which nothing can be said
-constexpr int kManyLarge = 40;                      // so that noise does not grow by chance
+constexpr int kSmallArea = 2, kMiddleArea = 4, kLargeArea = 8;  // cells along an area
+constexpr int kFewest = 4;                                      // areas, of which nothing can be said
+constexpr int kManyLarge = 40;                                  // so that noise does not grow by chance
 
 struct Sums {
   double count = 0.0, sum = 0.0, squares = 0.0;
@@ -61,11 +61,11 @@ StructureCheck::Unevenness StructureCheck::unevenness(const Frame& frame, const 
 
 bool StructureCheck::isNoise(const Frame& frame, const OcclusionMask& mask) const
 {
-  const Unevenness middle = unevenness(frame, mask, kMiddle);
+  const Unevenness middle = unevenness(frame, mask, kMiddleArea);
   if (middle.areas < kFewest) return false;
   if (middle.ratio < options_.least_structure) return true;
-  const Unevenness large = unevenness(frame, mask, kLarge);
-  return large.areas >= kManyLarge && large.ratio < options_.least_growth * unevenness(frame, mask, kSmall).ratio;
+  const Unevenness large = unevenness(frame, mask, kLargeArea);
+  return large.areas >= kManyLarge && large.ratio < options_.least_growth * unevenness(frame, mask, kSmallArea).ratio;
 }
 
 }  // namespace eyeslam::tracking

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::tracking {
 
 namespace {
@@ -15,8 +17,8 @@ constexpr double kAhead_widths = 3.0;
 constexpr double kAhead_px = 40.0;       // of thin instruments whole cells may miss the tip
 constexpr double kBeside_widths = 0.25;  // clear of a tapered tip
 constexpr double kProtruding = 6.0;      // steps
-constexpr double kStride = 2.0;          // steps of the coarse look for the end
-constexpr double kGap = 2.0;             // steps of retina that end the instrument
+constexpr double kEndStride = 2.0;       // steps of the coarse look for the end
+constexpr double kEndGap = 2.0;          // steps of retina that end the instrument
 constexpr float kPure = 0.87F;           // blue of the red: nothing but steel; a bloom's flank is that only when white
 constexpr double kPureLevel = 0.9;       // of saturation
 constexpr double kSharp_units = 0.5;
@@ -78,7 +80,7 @@ Tint ToolTipTracker::across(const TintSampler& image, const ShaftAxis& axis, dou
 std::optional<ToolTipTracker::End> ToolTipTracker::findEnd(const TintSampler& image, const ShaftAxis& axis) const
 {
   const auto share = static_cast<float>(options_.grey_share);
-  const double step = kStride * std::max(1.0, kUnit_widths * axis.width);
+  const double step = kEndStride * std::max(1.0, kUnit_widths * axis.width);
   const float pure = image.hasColour() ? std::max(kPure, share) : share;  // brightness has one threshold only
   const double first = -kBack_widths * axis.width;
   double last = first - step, last_pure = last;
@@ -92,7 +94,7 @@ std::optional<ToolTipTracker::End> ToolTipTracker::findEnd(const TintSampler& im
       bloom = false;
     }
     if (tint.excess(share) > 0.0F) last = along;
-    if (last >= first && along > last + kGap * step) break;
+    if (last >= first && along > last + kEndGap * step) break;
   }
   if (last_pure < first) return std::nullopt;
   return bloom ? hiddenEnd(image, axis, last_pure, last) : seenEnd(image, axis, last);
@@ -104,7 +106,7 @@ double ToolTipTracker::doubtInGlow(const TintSampler& image, const ShaftAxis& ax
   for (int ring = 1; ring <= kGlowRings; ++ring) {
     const double radius = ring * kGlowStep_widths * axis.width;
     for (int i = 0; i < kGlowDirections; ++i) {
-      const double angle = 2.0 * M_PI * i / kGlowDirections;
+      const double angle = kTwoPi * i / kGlowDirections;
       const Eigen::Vector2d at = axis.at(along + radius * std::cos(angle), radius * std::sin(angle));
       if (image.contains(at) && image(at).blue > options_.saturated) return radius + kGlowStep_widths * axis.width;
     }

@@ -7,19 +7,21 @@
 #include <cstring>
 #include <limits>
 
+#include "eyeslam/retina/units.h"
 #include "eyeslam/tracking/frame.h"
 
 namespace eyeslam::tracking {
 
 namespace {
 
-constexpr int kReach = TracingKernels::kFarthestEdge + 2;  // of a profile to either side: the derivative's half width
-constexpr int kProfile = 24;                               // 2 kReach + 1, made a whole number of vectors
-constexpr int kMargin = kReach + 5;                        // padding: the reach and the shift of the farthest row
-constexpr int kBrightest = Frame::kContrastUnit;           // clipped there, seven rows add up in 16 bits
-constexpr int kShift = 3;                                  // and an eighth of their sum can be weighted in 16 bits
+// Of a profile to either side: the derivative's half width.
+constexpr int kProfileReach = TracingKernels::kFarthestEdge + 2;
+constexpr int kProfile = 24;                      // 2 kProfileReach + 1, made a whole number of vectors
+constexpr int kPadding = kProfileReach + 5;       // the reach and the shift of the farthest row
+constexpr int kBrightest = Frame::kContrastUnit;  // clipped there, seven rows add up in 16 bits
+constexpr int kShift = 3;                         // and an eighth of their sum can be weighted in 16 bits
 
-static_assert(2 * kReach + 1 <= kProfile);
+static_assert(2 * kProfileReach + 1 <= kProfile);
 static_assert(7 * kBrightest < 32768 && 6 * (7 * kBrightest >> kShift) < 32768);
 
 using Profile = std::array<std::int16_t, kProfile>;
@@ -32,7 +34,7 @@ inline Lanes load(const std::int16_t* from)
   return lanes;
 }
 
-// An eighth of the sum over the template's rows; profile[kReach + j] belongs to offset j from the middle.
+// An eighth of the sum over the template's rows; profile[kProfileReach + j] belongs to offset j from the middle.
 inline void sumRows(const std::int16_t* first, std::ptrdiff_t step, const int* shift, int rows, Profile& profile)
 {
   Lanes a{}, b{}, c{};
@@ -89,8 +91,8 @@ TracingKernels::TracingKernels(const TracingKernelOptions& options)
   }
   for (int o = 0; o < kOrientations; ++o) {
     Template& shape = templates_[static_cast<std::size_t>(o)];
-    const double dx = std::cos(o * CV_PI / kOrientations);
-    const double dy = std::sin(o * CV_PI / kOrientations);
+    const double dx = std::cos(o * kPi / kOrientations);
+    const double dy = std::sin(o * kPi / kOrientations);
     shape.transposed = normalAxis(o).y() > 0.0F;
     const double along = std::max(std::abs(dx), std::abs(dy));
     const double slope = shape.transposed ? dy / dx : dx / dy;
@@ -105,7 +107,7 @@ TracingKernels::TracingKernels(const TracingKernelOptions& options)
 
 void TracingKernels::assign(const cv::Mat_<std::int16_t>& plane)
 {
-  cv::copyMakeBorder(plane, upright_, kMargin, kMargin, kMargin, kMargin, cv::BORDER_REPLICATE);
+  cv::copyMakeBorder(plane, upright_, kPadding, kPadding, kPadding, kPadding, cv::BORDER_REPLICATE);
   for (int y = 0; y < upright_.rows; ++y) {
     std::int16_t* row = upright_[y];
     for (int x = 0; x < upright_.cols; ++x) row[x] = std::min<std::int16_t>(row[x], kBrightest);
@@ -117,12 +119,12 @@ VesselEdges TracingKernels::evaluate(int x, int y, int orientation, int nearest,
 {
   const Template& shape = templates_[static_cast<std::size_t>(orientation)];
   const cv::Mat_<std::int16_t>& plane = shape.transposed ? transposed_ : upright_;
-  const int column = (shape.transposed ? y : x) + kMargin - kReach;
-  const int row = (shape.transposed ? x : y) + kMargin - shape.rows / 2;
+  const int column = (shape.transposed ? y : x) + kPadding - kProfileReach;
+  const int row = (shape.transposed ? x : y) + kPadding - shape.rows / 2;
   Profile profile;
   sumRows(plane[row] + column, static_cast<std::ptrdiff_t>(plane.step1()), shape.shift.data(), shape.rows, profile);
 
-  const std::int16_t* middle = profile.data() + kReach;
+  const std::int16_t* middle = profile.data() + kProfileReach;
   const Lanes falls = -differentiate(middle - kFarthestEdge);
   const Edge left = steepest(__builtin_shufflevector(falls, falls, 7, 6, 5, 4, 3, 2, 1, 0), nearest, farthest);
   const Edge right = steepest(differentiate(middle + 1), nearest, farthest);

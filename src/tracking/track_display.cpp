@@ -13,8 +13,8 @@ namespace eyeslam::tracking {
 
 namespace {
 
-constexpr std::size_t kMostPoints = 3000;  // a window system draws no more in a frame's time
-constexpr unsigned int kCross = 15;        // px
+constexpr std::size_t kMostDisplayed = 3000;  // a window system draws no more in a frame's time
+constexpr unsigned int kCross = 15;           // px
 
 template <class Pixel>
 void display(const vpImage<Pixel>& I, const retina::VesselMap& map, const TrackResult& result, const ToolTip& tip,
@@ -23,7 +23,7 @@ void display(const vpImage<Pixel>& I, const retina::VesselMap& map, const TrackR
   if (!I.display) return;
   const cv::Size size(static_cast<int>(I.getWidth()), static_cast<int>(I.getHeight()));
   if (result.tracked) {
-    for (const cv::Point2d at : vesselsInView(map, result.map_T_frame, size, kMostPoints)) {
+    for (const cv::Point2d at : vesselsInView(map, result.map_T_frame, size, kMostDisplayed)) {
       vpDisplay::displayPoint(I, vpImagePoint(at.y, at.x), color, thickness);
     }
   }

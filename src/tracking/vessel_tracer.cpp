@@ -6,13 +6,15 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::tracking {
 
 namespace {
 
-constexpr int kTile = 64;     // frame px; each has levels of its own, from half as much again
-constexpr int kSampling = 3;  // frame px, along a line of the grid
-constexpr int kBin = 4;       // of the histograms of levels, 1 / Frame::kContrastUnit
+constexpr int kLevelTile = 64;  // frame px; each has levels of its own, from half as much again
+constexpr int kSampling = 3;    // frame px, along a line of the grid
+constexpr int kBin = 4;         // of the histograms of levels, 1 / Frame::kContrastUnit
 constexpr int kBins = 512;
 constexpr double kMedianOfDifferences = 0.954;  // of two normal samples, in sigma: 0.6745 sqrt 2
 constexpr std::size_t kSeeds = 4096;            // tried; twice as many are collected at most
@@ -20,7 +22,7 @@ constexpr int kOwnSteps = 8;                    // a trace may touch what it cla
 constexpr double kUsualSteps = 8.0;             // what is usual follows a vessel that tapers, over so many steps
 constexpr int kNarrowestClaim = 2;
 constexpr int kMostClaims = 65000;  // labels have 16 bits
-constexpr float kHalfTurn = static_cast<float>(CV_PI);
+constexpr float kHalfTurn = static_cast<float>(kPi);
 
 int round(float value) { return static_cast<int>(std::lround(value)); }
 
@@ -79,12 +81,12 @@ void VesselTracer::detect(const Frame& frame, const OcclusionMask& mask, VesselP
 // Per tile, because a dark corner is noisier than the rest: its grey levels are multiplied by more.
 void VesselTracer::estimateLevels(const cv::Mat_<std::int16_t>& plane, const OcclusionMask& mask)
 {
-  tile_columns_ = (plane.cols + kTile - 1) / kTile;
+  tile_columns_ = (plane.cols + kLevelTile - 1) / kLevelTile;
   levels_.clear();
   const cv::Rect view(0, 0, plane.cols, plane.rows);
-  for (int y = 0; y < plane.rows; y += kTile) {
-    for (int x = 0; x < plane.cols; x += kTile) {
-      const cv::Rect tile(x - kTile / 4, y - kTile / 4, kTile * 3 / 2, kTile * 3 / 2);
+  for (int y = 0; y < plane.rows; y += kLevelTile) {
+    for (int x = 0; x < plane.cols; x += kLevelTile) {
+      const cv::Rect tile(x - kLevelTile / 4, y - kLevelTile / 4, kLevelTile * 3 / 2, kLevelTile * 3 / 2);
       levels_.push_back(estimateLevels(plane, mask, tile & view));
     }
   }
@@ -119,7 +121,7 @@ VesselTracer::Levels VesselTracer::estimateLevels(const cv::Mat_<std::int16_t>& 
 
 const VesselTracer::Levels& VesselTracer::levelsAt(int x, int y) const
 {
-  return levels_[static_cast<std::size_t>(y / kTile * tile_columns_ + x / kTile)];
+  return levels_[static_cast<std::size_t>(y / kLevelTile * tile_columns_ + x / kLevelTile)];
 }
 
 // Local minima along the grid's lines (facts A2.3.2), darkest first: strong vessels claim their pixels before weak

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "eyeslam/trials/aid_style.h"
+#include "eyeslam/trials/figure_layout.h"
 #include "eyeslam/trials/retina_panel.h"
 #include "eyeslam/trials/svg_canvas.h"
 #include "eyeslam/trials/svg_chart.h"
@@ -16,13 +17,13 @@ namespace eyeslam::trials {
 
 namespace {
 
-constexpr double kWidth = 1080.0, kGap = 24.0, kTallest_px = 560.0, kSinglePanel_px = 820.0;
-constexpr double kMargin = 200e-6, kLeast = 1.5e-3;  // m
-constexpr double kUsualBurn = 100e-6;                // m, where the plan does not say
-constexpr double kFar_um = 60.0, kBound_um = 30.0;   // rings; issue 17: farther is a far pulse
+constexpr double kTallest_px = 560.0, kSinglePanel_px = 820.0;
+constexpr double kBurnMargin = 200e-6, kLeastBurnPanel = 1.5e-3;  // m
+constexpr double kUsualBurn = 100e-6;                             // m, where the plan does not say
+constexpr double kFar_um = 60.0, kBound_um = 30.0;                // rings; issue 17: farther is a far pulse
 constexpr const char* kMissedColour = "#cc79a7";
 
-Box regionOf(const std::vector<const TrialRecord*>& trials)
+Box regionOfBurns(const std::vector<const TrialRecord*>& trials)
 {
   Box region;
   for (const TrialRecord* trial : trials) {
@@ -30,7 +31,7 @@ Box regionOf(const std::vector<const TrialRecord*>& trials)
     for (const PulseRecord& pulse : trial->pulses) region.extend(pulse.spot);
   }
   if (region.isEmpty()) return region;
-  const Eigen::Vector2d margin(kMargin, kMargin);
+  const Eigen::Vector2d margin(kBurnMargin, kBurnMargin);
   return {region.min() - margin, region.max() + margin};
 }
 
@@ -189,32 +190,33 @@ std::string burnFigure(const std::vector<const TrialRecord*>& trials, double mar
 {
   const bool single = trials.size() == 1;
   const auto columns = static_cast<double>(trials.size());
-  const double width = single ? kSinglePanel_px : (kWidth - kGap * (columns - 1.0)) / columns;
-  Box region = regionOf(trials);
+  const double width = single ? kSinglePanel_px : (kFigureWidth - kPanelGap * (columns - 1.0)) / columns;
+  Box region = regionOfBurns(trials);
   const double shape = region.isEmpty() ? 1.4 : region.sizes().x() / region.sizes().y();
   const double height = std::min(kTallest_px, width / std::max(shape, 0.8));
-  region = grownTo(region, width / height, kLeast);
+  region = grownTo(region, width / height, kLeastBurnPanel);
   std::size_t reasons = 0;
   for (const TrialRecord* trial : trials) reasons = std::max(reasons, lettersOf({trial}).size());
   const double bottom = 24.0 + height;
   const double legend = bottom + 15.0 * static_cast<double>(reasons) + 34.0;
-  SvgCanvas canvas(kWidth, single ? bottom + 10.0 : legend + 10.0, "burns over the retina");
+  SvgCanvas canvas(kFigureWidth, single ? bottom + 10.0 : legend + 10.0, "burns over the retina");
   const RetinaBackground background(trials.front()->retina, region, margin, name);
   if (!background.empty()) canvas.insert(background.definition());
   for (std::size_t i = 0; i < trials.size(); ++i) {
-    const Box plot = boxAt(static_cast<double>(i) * (width + kGap), 24.0, width, height);
+    const Box plot = boxAt(static_cast<double>(i) * (width + kPanelGap), 24.0, width, height);
     const Eigen::Vector2d reasons_at =
-        single ? Eigen::Vector2d(width + kGap, 250.0) : Eigen::Vector2d(plot.min().x(), bottom + 18.0);
+        single ? Eigen::Vector2d(width + kPanelGap, 250.0) : Eigen::Vector2d(plot.min().x(), bottom + 18.0);
     drawPanel(*trials[i], background, plot, region, static_cast<char>('a' + static_cast<char>(i)), reasons_at, canvas);
   }
-  drawLegend(trials, margin, single ? Legend(canvas, {width + kGap, 40.0}, 22.0) : Legend(canvas, {0.0, legend}, 0.0));
+  drawLegend(trials, margin,
+             single ? Legend(canvas, {width + kPanelGap, 40.0}, 22.0) : Legend(canvas, {0.0, legend}, 0.0));
   return canvas.svg();
 }
 
 std::string placementFigure(const std::vector<std::vector<const TrialRecord*>>& aids)
 {
   constexpr double kSide = 320.0, kLeft = 64.0;
-  SvgCanvas canvas(kWidth, kSide + 84.0, "burns as seen from their targets");
+  SvgCanvas canvas(kFigureWidth, kSide + 84.0, "burns as seen from their targets");
   double range = 1.25 * kFar_um;
   std::vector<std::vector<Eigen::Vector2d>> offsets;
   for (const auto& trials : aids) {

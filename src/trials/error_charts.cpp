@@ -8,6 +8,7 @@
 
 #include "eyeslam/trials/aid_style.h"
 #include "eyeslam/trials/bootstrap.h"
+#include "eyeslam/trials/figure_layout.h"
 #include "eyeslam/trials/svg_canvas.h"
 #include "eyeslam/trials/svg_chart.h"
 
@@ -15,7 +16,6 @@ namespace eyeslam::trials {
 
 namespace {
 
-constexpr double kWidth = 1080.0, kLeft = 62.0;  // px
 constexpr double kRmsWindow_s = 0.5;
 constexpr std::size_t kColumns = 900;
 constexpr const char* kFastMotion = "#ececf4";
@@ -231,19 +231,19 @@ void drawStrip(const StudyGroup& group, const Measure& measure, const Box& plot,
 std::string errorOverTime(const std::vector<const TrialRecord*>& trials)
 {
   const bool several = trials.size() > 1;
-  SvgCanvas canvas(kWidth, several ? 560.0 : 300.0, "error over time");
-  const double width = kWidth - kLeft - 16.0;
-  drawOverTime(trials, boxAt(kLeft, 30.0, width, several ? 210.0 : 220.0),
+  SvgCanvas canvas(kFigureWidth, several ? 560.0 : 300.0, "error over time");
+  const double width = kFigureWidth - kAxisWidth - 16.0;
+  drawOverTime(trials, boxAt(kAxisWidth, 30.0, width, several ? 210.0 : 220.0),
                several ? "a\u00a0 all, in one scale" : "error of the tip", canvas);
   if (several)
-    drawOverTime({trials.back()}, boxAt(kLeft, 310.0, width, 200.0),
+    drawOverTime({trials.back()}, boxAt(kAxisWidth, 310.0, width, 200.0),
                  "b\u00a0 " + styleOf(trials.back()->score.aid).name + " alone", canvas);
   return canvas.svg();
 }
 
 std::string errorDistribution(const std::vector<AidTrials>& aids)
 {
-  SvgCanvas canvas(kWidth, 380.0, "distribution of errors");
+  SvgCanvas canvas(kFigureWidth, 380.0, "distribution of errors");
   std::vector<std::vector<double>> pooled;
   double least = 1e12, greatest = 1.0;
   for (const AidTrials& aid : aids) {
@@ -253,7 +253,7 @@ std::string errorDistribution(const std::vector<AidTrials>& aids)
     least = std::min(least, std::max(0.1, pooled.back()[pooled.back().size() / 100]));
     greatest = std::max(greatest, pooled.back().back());
   }
-  SvgChart chart(canvas, boxAt(kLeft, 30.0, kWidth - kLeft - 16.0, 300.0),
+  SvgChart chart(canvas, boxAt(kAxisWidth, 30.0, kFigureWidth - kAxisWidth - 16.0, 300.0),
                  Axis::decades("error (\u00b5m), logarithmic", std::min(least, greatest), greatest),
                  {"smaller than that (%)", 0.0, 100.0});
   chart.axes();
@@ -276,11 +276,11 @@ std::string overSeedsFigure(const StudyGroup& group)
 {
   const std::vector<Measure>& measures = measuresOf(group.task);
   const auto panels = static_cast<double>(measures.size());
-  const double step = kWidth / panels;
-  SvgCanvas canvas(kWidth, 350.0, "figures of each seed");
+  const double step = kFigureWidth / panels;
+  SvgCanvas canvas(kFigureWidth, 350.0, "figures of each seed");
   for (std::size_t i = 0; i < measures.size(); ++i)
-    drawStrip(group, measures[i], boxAt(kLeft + step * static_cast<double>(i), 30.0, step - kLeft - 24.0, 270.0),
-              canvas);
+    drawStrip(group, measures[i],
+              boxAt(kAxisWidth + step * static_cast<double>(i), 30.0, step - kAxisWidth - 24.0, 270.0), canvas);
   return canvas.svg();
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "eyeslam/trials/error_figures.h"
+#include "eyeslam/trials/figure_layout.h"
 #include "eyeslam/trials/svg_canvas.h"
 #include "eyeslam/trials/svg_chart.h"
 
@@ -15,7 +16,6 @@ namespace eyeslam::trials {
 
 namespace {
 
-constexpr double kWidth = 1080.0, kLeft = 62.0;  // px
 constexpr double kMostBins = 40.0;
 
 struct Latency {
@@ -62,16 +62,16 @@ std::string latencyFigure(const std::vector<const TrialRecord*>& trials)
       {"age of a pose when it arrives", "ms", 1e3, &TrialRecord::pose_ages_s},
       {"exposure to the command that uses it", "ms", 1e3, &TrialRecord::frame_to_command_s},
       {"CPU time of the longest cycle", "\u00b5s", 1e6, &TrialRecord::computation_s}};
-  SvgCanvas canvas(kWidth, 280.0, "latencies");
+  SvgCanvas canvas(kFigureWidth, 280.0, "latencies");
   std::vector<std::pair<Latency, std::vector<double>>> measured;
   for (const Latency& latency : latencies) {
     std::vector<double> values = gathered(trials, latency);
     if (!values.empty()) measured.emplace_back(latency, std::move(values));
   }
-  const double step = kWidth / static_cast<double>(std::max<std::size_t>(measured.size(), 1));
+  const double step = kFigureWidth / static_cast<double>(std::max<std::size_t>(measured.size(), 1));
   double at = 0.0;
   for (const auto& [latency, values] : measured) {
-    drawHistogram(latency, values, boxAt(at + kLeft, 30.0, step - kLeft - 20.0, 195.0), canvas);
+    drawHistogram(latency, values, boxAt(at + kAxisWidth, 30.0, step - kAxisWidth - 20.0, 195.0), canvas);
     at += step;
   }
   return measured.empty() ? std::string() : canvas.svg();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "eyeslam/simulation/loop_period.h"
 #include "eyeslam/trials/lock_step_time.h"
 
 namespace eyeslam::trials {
@@ -13,8 +14,6 @@ using servo::ServoCycle;
 using simulation::TrackedFrame;
 
 namespace {
-
-constexpr double kPeriod_s = 1e-3;
 
 std::int64_t utimeOf(double t_s) { return kStart_us + std::llround(1e6 * t_s); }
 
@@ -45,8 +44,8 @@ class Bench {
 
   LoopResult run()
   {
-    const auto steps = std::llround((setting_.settling_s + setting_.duration_s) / kPeriod_s);
-    for (std::int64_t i = 1; i <= steps; ++i) step(static_cast<double>(i) * kPeriod_s);
+    const auto steps = std::llround((setting_.settling_s + setting_.duration_s) / simulation::kPeriod_s);
+    for (std::int64_t i = 1; i <= steps; ++i) step(static_cast<double>(i) * simulation::kPeriod_s);
     static_cast<TipErrors&>(result_) = judge_.result();
     result_.refusals = cycle_.refusals();
     return std::move(result_);
@@ -81,7 +80,8 @@ class Bench {
     const servo::ServoCommand& command = cycle_.command(task_.fixture(outlook));
     goal_ = command.goal;
     if (goals_++ > 0)
-      result_.highest_goal_speed = std::max(result_.highest_goal_speed, (goal_ - last_goal).norm() / kPeriod_s);
+      result_.highest_goal_speed =
+          std::max(result_.highest_goal_speed, (goal_ - last_goal).norm() / simulation::kPeriod_s);
     if (setting_.servo.null_at == "controller") {
       micron_.commandTip(command.position);
     } else {
@@ -95,7 +95,7 @@ class Bench {
     input.now = utimeOf(t_s);
     const simulation::MicronReading& reading = micron_.state();
     if (reading.periods > 0) {
-      servo::ManipulatorState state{utimeOf(static_cast<double>(reading.periods) * kPeriod_s), reading.null,
+      servo::ManipulatorState state{utimeOf(static_cast<double>(reading.periods) * simulation::kPeriod_s), reading.null,
                                     reading.tip, std::nullopt};
       if (setting_.port_measured) state.port = reading.port;
       input.state = state;

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "eyeslam/fixtures/burn_order.h"
+#include "eyeslam/retina/units.h"
 #include "eyeslam/servo/plan_messages.h"
 #include "eyeslam/trials/lock_step_time.h"
 
@@ -14,7 +15,6 @@ namespace {
 
 constexpr std::size_t kSeenOver_ms = 100;  // the error is a mean over it; loop study, 1
 constexpr std::int16_t kDone = 1;          // burn_target_t
-constexpr double kMilli = 1e-3;
 
 fixtures::BurnPlan planOnTruth(const TrialSetting& setting, const TrialScene& scene)
 {

@@ -6,12 +6,13 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "eyeslam/retina/units.h"
+
 namespace eyeslam::trials {
 
 namespace {
 
 constexpr std::uint8_t kVessel = 128;
-constexpr double kMicro = 1e-6;
 
 std::optional<double> share(double part, double whole)
 {

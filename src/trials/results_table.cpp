@@ -130,9 +130,9 @@ void writeResultsTable(const std::string& path, const std::vector<TrialScore>& s
 
 std::vector<TrialScore> readResultsTable(const std::string& path)
 {
-  const std::vector<std::uint8_t> bytes = files::readWholeFile(path);
+  const std::string text = files::readWholeText(path);
   try {
-    return parseResultsTable({bytes.begin(), bytes.end()});
+    return parseResultsTable(text);
   } catch (const std::invalid_argument& error) {
     throw files::FileError(fmt::format("{}: {}", path, error.what()));
   }

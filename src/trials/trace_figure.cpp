@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "eyeslam/trials/aid_style.h"
+#include "eyeslam/trials/figure_layout.h"
 #include "eyeslam/trials/retina_panel.h"
 #include "eyeslam/trials/svg_canvas.h"
 
@@ -13,10 +14,9 @@ namespace eyeslam::trials {
 
 namespace {
 
-constexpr double kWidth = 1080.0, kGap = 24.0;  // px
 constexpr double kPanelHeight_px = 390.0, kCloseUpHeight_px = 300.0;
-constexpr double kMargin = 150e-6;                    // m, of retina around what is drawn
-constexpr double kLeast = 0.8e-3, kCloseUp = 0.5e-3;  // m, widths of panels
+constexpr double kTraceMargin = 150e-6;                         // m, of retina around what is drawn
+constexpr double kLeastTracePanel = 0.8e-3, kCloseUp = 0.5e-3;  // m, widths of panels
 constexpr double kFinest_px = 0.2;
 
 Points tracesOf(const TrialRecord& trial)
@@ -27,7 +27,7 @@ Points tracesOf(const TrialRecord& trial)
   return points;
 }
 
-Box regionOf(const std::vector<const TrialRecord*>& trials)
+Box regionOfTraces(const std::vector<const TrialRecord*>& trials)
 {
   Box region;
   for (const TrialRecord* trial : trials) {
@@ -35,7 +35,7 @@ Box regionOf(const std::vector<const TrialRecord*>& trials)
     for (const TipSample& sample : trial->tip) region.extend(Eigen::Vector2d(sample.tip.head<2>()));
   }
   if (region.isEmpty()) return region;
-  const Eigen::Vector2d margin(kMargin, kMargin);
+  const Eigen::Vector2d margin(kTraceMargin, kTraceMargin);
   return {region.min() - margin, region.max() + margin};
 }
 
@@ -109,11 +109,11 @@ std::string traceFigure(const std::vector<const TrialRecord*>& trials, const std
   const bool single = trials.size() == 1;
   const bool closer = trials.front()->task != "standoff";  // from above its error cannot be seen
   const auto columns = static_cast<double>(single && closer ? 2 : trials.size());
-  const double width = (kWidth - kGap * (columns - 1.0)) / columns;
-  const double below = kPanelHeight_px + 24.0 + kGap + 14.0;
+  const double width = (kFigureWidth - kPanelGap * (columns - 1.0)) / columns;
+  const double below = kPanelHeight_px + 24.0 + kPanelGap + 14.0;
   const double bottom = single || !closer ? kPanelHeight_px + 24.0 : below + kCloseUpHeight_px;
-  SvgCanvas canvas(kWidth, bottom + 30.0, "way of the tip over the retina");
-  const Box region = grownTo(regionOf(trials), width / kPanelHeight_px, kLeast);
+  SvgCanvas canvas(kFigureWidth, bottom + 30.0, "way of the tip over the retina");
+  const Box region = grownTo(regionOfTraces(trials), width / kPanelHeight_px, kLeastTracePanel);
   const double closer_height = single ? kPanelHeight_px : kCloseUpHeight_px;
   const Eigen::Vector2d middle = placeOfCloseUp(*trials.back());
   const Box close_up = grownTo({middle, middle}, width / closer_height, kCloseUp);
@@ -121,13 +121,13 @@ std::string traceFigure(const std::vector<const TrialRecord*>& trials, const std
   if (!background.empty()) canvas.insert(background.definition());
   char letter = 'a';
   for (std::size_t i = 0; i < trials.size(); ++i) {
-    const double x = static_cast<double>(i) * (width + kGap);
+    const double x = static_cast<double>(i) * (width + kPanelGap);
     const Box plot = boxAt(x, 24.0, width, kPanelHeight_px);
     drawPanel(*trials[i], background, plot, region, titleOf(*trials[i], letter++), canvas);
     if (closer) drawPlaceOfCloseUp(plot, region, close_up, canvas);
   }
   for (std::size_t i = 0; closer && i < trials.size(); ++i) {
-    const double x = static_cast<double>(single ? 1 : i) * (width + kGap);
+    const double x = static_cast<double>(single ? 1 : i) * (width + kPanelGap);
     const Box plot = boxAt(x, single ? 24.0 : below, width, closer_height);
     drawPanel(*trials[i], background, plot, close_up, fmt::format("{}\u00a0 close-up", letter++), canvas);
   }

@@ -5,13 +5,13 @@
 #include <utility>
 
 #include "eyeslam/fixtures/virtual_fixtures.h"
+#include "eyeslam/retina/units.h"
 #include "eyeslam/simulation/random.h"
 
 namespace eyeslam::trials {
 
 namespace {
 
-constexpr double kTwoPi = 2.0 * 3.14159265358979323846;
 constexpr double kUmPerPx = 5.0;        // loop study, section 1
 constexpr double kSpeed = 0.4e-3;       // m/s, loop study, section 1
 constexpr double kRadius_px = 10.0;     // a vein of 100 um, facts D4

@@ -10,6 +10,8 @@
 #include "eyeslam/messaging/retina_messages.h"
 #include "eyeslam/messaging/servo_messages.h"
 #include "eyeslam/retina/reason.h"
+#include "eyeslam/retina/units.h"
+#include "eyeslam/simulation/loop_period.h"
 #include "eyeslam/trials/lock_step_time.h"
 #include "eyeslam/trials/segment.h"
 #include "eyeslam/trials/trial_marks.h"
@@ -18,11 +20,9 @@ namespace eyeslam::trials {
 
 namespace {
 
-constexpr double kMicro = 1e-6;
-constexpr double kFar = 60e-6;    // issue 17: pulses more than 60 um off
-constexpr double kMoved = 40e-6;  // the same: explained where the retina moved more
-constexpr double kBack = 150e-6;  // back beside the path: as far as a hand leans (loop study, 1)
-constexpr double kPeriod_s = 1e-3;
+constexpr double kFarOff = 60e-6;              // issue 17: pulses more than 60 um off
+constexpr double kMoved = 40e-6;               // the same: explained where the retina moved more
+constexpr double kBack = 150e-6;               // back beside the path: as far as a hand leans (loop study, 1)
 constexpr std::int64_t kMostMissing = 10'000;  // milliseconds; a longer gap is another clock's
 
 template <class Message, class Use>
@@ -108,7 +108,7 @@ void TrialJudge::rememberRetina(const simulation::RetinaPose& retina, std::int64
 void TrialJudge::watchSpeed(const truth_t& truth)
 {
   const Eigen::Vector3d tip = retina_.back().toWorld(Eigen::Vector3d(truth.tip));
-  if (last_world_tip_) fastest_tip_ = std::max(fastest_tip_, (tip - *last_world_tip_).norm() / kPeriod_s);
+  if (last_world_tip_) fastest_tip_ = std::max(fastest_tip_, (tip - *last_world_tip_).norm() / simulation::kPeriod_s);
   last_world_tip_ = tip;
 }
 
@@ -261,7 +261,7 @@ PulseRecord TrialJudge::recordOf(const Pulse& pulse) const
   record.placement = (record.spot - record.wanted).norm();
   record.clearance = scene_->vesselDistance(pulse.spot) - 0.5 * burn;
   record.touched_calibre = scene_->widestWithin(pulse.spot, 0.5 * burn);
-  record.far = record.placement > kFar;
+  record.far = record.placement > kFarOff;
   const Eigen::Vector3d wanted(record.wanted.x(), record.wanted.y(), 0.0);
   const Eigen::Vector3d moved = retinaAt(pulse.end).toWorld(wanted) - retinaAt(pulse.newest_frame).toWorld(wanted);
   record.explained = record.far && moved.head<2>().norm() > kMoved;

@@ -12,6 +12,7 @@
 
 #include "eyeslam/files/picture_file.h"
 #include "eyeslam/fixtures/vessel_graph.h"
+#include "eyeslam/retina/units.h"
 #include "eyeslam/simulation/eye_camera.h"
 #include "eyeslam/simulation/fundus_photograph.h"
 #include "eyeslam/simulation/procedural_fundus.h"
@@ -21,7 +22,6 @@ namespace eyeslam::trials {
 
 namespace {
 
-constexpr double kMicro = 1e-6;
 constexpr double kLineStep = 10e-6;  // m
 constexpr double kRadius = 20e-6;    // m, of a vessel that a microscope shows clearly
 constexpr double kApart = 200e-6;    // m, what a leaning hand may be off (loop study, 1)
@@ -33,11 +33,11 @@ constexpr double kRetina_mm[] = {18.0, 14.0};  // room for a view beside the dis
 constexpr double kDiscRoom = 400e-6;           // m
 constexpr double kDiscBrightness = 1.3;        // of the mean
 constexpr double kSeam = 1.25;                 // of half a view, that must stay on the retina
-constexpr double kTurn = 0.2;         // of half a view, so far is the eye turned to get reflections out of the way
-constexpr int kTurns = 4;             // steps of it each way
-constexpr double kInView = 0.75;      // of half a view: within it an instrument is seen well
-constexpr double kFar = 2e-3;         // m, from which no centreline is looked for: the manipulator's reach
-constexpr double kEyeMoves = 150e-6;  // m, under reflections that stay
+constexpr double kTurn = 0.2;             // of half a view, so far is the eye turned to get reflections out of the way
+constexpr int kTurns = 4;                 // steps of it each way
+constexpr double kInView = 0.75;          // of half a view: within it an instrument is seen well
+constexpr double kFarthestVessel = 2e-3;  // m, from which no centreline is looked for: the manipulator's reach
+constexpr double kEyeMoves = 150e-6;      // m, under reflections that stay
 
 cv::Mat read(const std::string& path, int mode)
 {
@@ -247,7 +247,7 @@ double TrialScene::vesselDistance(const Eigen::Vector2d& place) const
 
 double TrialScene::centrelineDistance(const Eigen::Vector2d& place) const
 {
-  const auto nearest = vessels_.nearest(place - middle_.head<2>(), kFar);
+  const auto nearest = vessels_.nearest(place - middle_.head<2>(), kFarthestVessel);
   return nearest ? nearest->distance : std::numeric_limits<double>::infinity();
 }
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "eyeslam/retina/reason.h"
+#include "eyeslam/retina/units.h"
 #include "eyeslam/trials/error_figures.h"
 #include "eyeslam/trials/trial_judge.h"
 
@@ -14,10 +15,8 @@ namespace eyeslam::trials {
 
 namespace {
 
-constexpr double kMicro = 1e-6;
 constexpr double kOnPath = 50e-6;   // m, that counts as having been there
 constexpr double kNotices_s = 0.5;  // after a fault that is short; the longest of the servo's patiences is 0.3 s
-constexpr double kDegree = 57.29577951308232;
 constexpr const char* kFates[] = {"pending", "done", "missed", "refused"};  // burn_target_t
 
 double share(std::size_t part, std::size_t whole)
@@ -162,7 +161,7 @@ void TrialJudge::addPoses(TrialRecord& record) const
     if (!frame.seen) continue;
     const retina::Pose2 error = (first_frame_->inverse() * frame.truth).inverse() * *frame.seen;
     record.pose_errors_px.push_back(0.5 * error.translation().norm());
-    degrees.push_back(std::abs(kDegree * error.theta));
+    degrees.push_back(std::abs(kDegreesPerRadian * error.theta));
   }
   record.score.tracked_fraction =
       share(static_cast<std::size_t>(frames_tracked_), static_cast<std::size_t>(frames_seen_));

@@ -9,6 +9,7 @@
 
 #include "eyeslam/messaging/decoding.h"
 #include "eyeslam/replay/message_types.h"
+#include "eyeslam/vision/frame_rate.h"
 #include "support/broken_messages.h"
 #include "support/filmed_vision.h"
 #include "support/sanitized.h"
@@ -156,6 +157,60 @@ TEST(TrackerReplay, SaysWhichPosesHaveNoPictureAndWhichTimesCannotBe)
   EXPECT_EQ(again.findings.times_repeated, 1);
   EXPECT_EQ(again.findings.times_backwards, 1);
   EXPECT_EQ(again.findings.first_bad_time, 40);
+}
+
+// A live tracker and its log. @param late  frames that it has seen since a registration was sent when it reads that
+std::string liveLog(support::WrittenLog& log, int frames, int late)
+{
+  constexpr int kSent = 20;
+  messaging::Link link("memq://", FilmedVision::kSession, std::nullopt);
+  messaging::EventTap tap(link, [&](const messaging::TappedEvent& event) {
+    if (event.channel == "REGISTRATION") return;  // it went to the log when it was sent
+    log.add(std::string(event.channel), support::Bytes(event.data, event.data + event.size), event.utime);
+  });
+  vision::FrameTracker tracker(FilmedVision::options(), link, 0.0, FilmedVision::kRate);
+  vision::FrameRate rate(FilmedVision::kRate);
+  registration_t scale = support::headed<registration_t>(0, 0, FilmedVision::kSession + 1);
+  scale.valid = true;
+  scale.um_per_px = 4.5;
+  for (int frame = 0; frame < frames; ++frame) {
+    const messaging::FrameStamp stamp{support::kLogStart + std::llround(1e6 * frame / FilmedVision::kRate), frame,
+                                      0.004};
+    const std::int64_t ready = stamp.utime + 6000;
+    tap.setTime(ready);
+    if (frame == kSent) {
+      scale.utime = scale.utime_sent = ready - 5000;
+      log.add(scale, scale.utime_sent);
+    }
+    if (frame == kSent + late) {
+      const support::Bytes bytes = support::encodedMessage(scale);
+      link.send("REGISTRATION", bytes.data(), bytes.size());
+      link.drain({ready, ready});
+    }
+    tracker.setFrameRate(rate.follow(stamp.utime));
+    const vision::SeenFrame seen = tracker.look(filmed().pictures[static_cast<std::size_t>(frame)], stamp);
+    tracker.tell(seen, ready);
+    tracker.updateMap();
+    tracker.tellMap(stamp, ready);
+    link.drain({ready, ready});
+  }
+  return log.finish();
+}
+
+TEST(TrackerReplay, LiveARegistrationCountsFromThePoseThatSaysSo)
+{
+  constexpr int kFrames = 40;
+  TrackerReplayOptions options = usual();
+  options.order = TrackerOrder::live;
+  const std::vector<cv::Mat> some(filmed().pictures.begin(), filmed().pictures.begin() + kFrames);
+  const std::string film = filmed().film("live.mkv", some);
+  for (const int late : {0, 1, 3}) {
+    support::WrittenLog log;
+    const Replayed again = replayed(liveLog(log, kFrames, late), film, options);
+    EXPECT_TRUE(again.comparison.isIdentical()) << late << " frames late";
+    EXPECT_EQ(again.of("RETINA_POSE").identical, kFrames);
+    EXPECT_EQ(again.of("RETINA_POSE").compared, kFrames);
+  }
 }
 
 TEST(TrackerReplay, ComesToAnEndWithBrokenMessages)

@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "eyeslam/retina/turn_between.h"
 #include "eyeslam/robot/tool_jacobian.h"
 #include "eyeslam/robot/visp_conversion.h"
 #include "support/simulated_micron.h"
@@ -330,7 +331,7 @@ TEST(ToolJacobian, IsTheDerivativeOfAShaftThroughThePivot)
     const Eigen::Vector3d tip(2e-3 * any(random), 2e-3 * any(random), 2e-3 * any(random));
     const robot::ToolJacobian jacobian = robot::toolJacobian(tip, pivot);
     const Eigen::Vector3d step = 1e-6 * Eigen::Vector3d(any(random), any(random), any(random));
-    const auto turn = Eigen::Quaterniond::FromTwoVectors(tip - step - pivot, tip + step - pivot);
+    const auto turn = retina::turnBetween(tip - step - pivot, tip + step - pivot);
     EXPECT_LT((2.0 * turn.vec() - jacobian.bottomRows<3>() * 2.0 * step).norm(), 1e-8 * step.norm() / 1e-6);
     EXPECT_EQ(jacobian.topRows<3>() * step, step);
   }

@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "eyeslam/retina/turn_between.h"
 #include "eyeslam/robot/robot_micron.h"
 #include "eyeslam/robot/tool_jacobian.h"
 #include "eyeslam/robot/visp_conversion.h"
@@ -52,7 +53,7 @@ class Scene {
   }
   Eigen::Isometry3d tool() const
   {
-    Eigen::Isometry3d fMe(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), tip - port));
+    Eigen::Isometry3d fMe(retina::turnBetween(Eigen::Vector3d::UnitZ(), tip - port));
     fMe.translation() = tip;
     return fMe;
   }

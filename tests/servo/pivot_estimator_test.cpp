@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "eyeslam/retina/turn_between.h"
 #include "eyeslam/simulation/hand.h"
 #include "eyeslam/simulation/retina_motion.h"
 #include "support/allocation_counter.h"
@@ -22,7 +23,7 @@ constexpr double kMicro = 1e-6;
 
 messaging::ToolPose shaftThrough(const Eigen::Vector3d& port, const Eigen::Vector3d& tip)
 {
-  return {tip, Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), tip - port)};
+  return {tip, retina::turnBetween(Eigen::Vector3d::UnitZ(), tip - port)};
 }
 
 /// A simulated hand that holds a retina point in situ: the eye is turned by it, so its port moves by some 0.1 mm; the
