@@ -65,11 +65,14 @@ void Illumination::lightAt(double t, cv::Mat_<float>& light) const
   const double y0 = cone_centre_.y + wander * std::sin(kTwoPi * 0.11 * t + phase_y_);
   const double sigma = options_.cone_px * px_scale_;
   cv::Mat_<float> cells((view_.height + kLightCell - 1) / kLightCell, (view_.width + kLightCell - 1) / kLightCell);
+  // A product of what depends on x and what depends on y.
+  const auto falls = [sigma](double away) { return std::exp(-away * away / (2.0 * sigma * sigma)); };
+  std::vector<double> across;
+  for (int column = 0; column < cells.cols; ++column) across.push_back(falls(kLightCell * (column + 0.5) - x0));
   for (int row = 0; row < cells.rows; ++row) {
+    const double down = falls(kLightCell * (row + 0.5) - y0);
     for (int column = 0; column < cells.cols; ++column) {
-      const double dx = kLightCell * (column + 0.5) - x0;
-      const double dy = kLightCell * (row + 0.5) - y0;
-      const double cone = std::exp(-(dx * dx + dy * dy) / (2.0 * sigma * sigma));
+      const double cone = across[static_cast<std::size_t>(column)] * down;
       cells(row, column) = static_cast<float>(options_.gain * (options_.floor + (1.0 - options_.floor) * cone));
     }
   }

@@ -47,8 +47,7 @@ RenderedFrame Microscope::expose(int frame, const ViewMotion& motion)
   result.tool = instrument_.at(result.t_s);
   light(result.t_s, result);
   if (result.tool.present) laser_.addSpot(picture_, result.tool.tip, result.frame);
-  addBlooms(result.t_s, result);
-  sensor_.read(picture_, result.image);
+  read(result);
   fire(result);
   if (!result.tool.present) result.tool.tip = {};
   return result;
@@ -62,8 +61,7 @@ RenderedFrame Microscope::expose(int frame, const ViewMotion& motion, const Tool
   if (result.tool.shaft_width <= 0.0) result.tool.shaft_width = instrument_.width();
   light(result.t_s, result);
   laser_.addLight(picture_, seen.spot, seen.aiming, seen.flash);
-  addBlooms(result.t_s, result);
-  sensor_.read(picture_, result.image);
+  read(result);
   result.fired = seen.flash > 0.0;
   if (!result.tool.present) result.tool.tip = {};
   return result;
@@ -88,11 +86,10 @@ void Microscope::exposeRetina(double t, const ViewMotion& motion)
                        travel(motion.at(t), motion.at(t + exposure / 2), view_.size);
   const int parts =
       std::clamp(static_cast<int>(std::ceil(moved / (kSubExposure_px * view_.px_scale))), 1, kMostSubExposures);
-  picture_.setTo(cv::Scalar::all(0.0));
   for (int i = 0; i < parts; ++i) {
     const double instant = t + exposure * ((i + 0.5) / parts - 0.5);
-    accumulateView(canvas_, {motion.at(instant), motion.warpAt(instant), map_origin_}, 1.0F / static_cast<float>(parts),
-                   picture_);
+    const ViewMapping mapping{motion.at(instant), motion.warpAt(instant), map_origin_};
+    accumulateView(canvas_, mapping, {1.0F / static_cast<float>(parts), i == 0}, picture_);
   }
 }
 
@@ -119,15 +116,12 @@ void Microscope::light(double t, RenderedFrame& result)
   result.tool_cover = static_cast<double>(covered) / static_cast<double>(view_.size.area());
 }
 
-void Microscope::addBlooms(double t, RenderedFrame& result)
+void Microscope::read(RenderedFrame& result)
 {
-  blooms_.addTo(picture_, t);
-  const double on = illumination_.switchedOn(t);
+  blooms_.addTo(picture_, result.t_s);
+  const double on = illumination_.switchedOn(result.t_s);
   result.visible = on >= kSeen;
-  for (int y = 0; y < picture_.rows; ++y) {
-    auto* pixel = picture_.ptr<cv::Vec4f>(y);
-    for (int x = 0; x < picture_.cols; ++x) pixel[x] *= static_cast<float>(on) * illumination_.field()(y, x);
-  }
+  sensor_.read(picture_, illumination_.field(), static_cast<float>(on), result.image);
 }
 
 // After the frame: the retina whitens while the pulse goes on, so the burn shows from the next frame.

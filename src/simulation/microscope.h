@@ -109,7 +109,7 @@ class Microscope {
   void defocus(double t_s);
   void begin(int frame, const ViewMotion& motion, RenderedFrame& result);
   void light(double t_s, RenderedFrame& result);
-  void addBlooms(double t_s, RenderedFrame& result);
+  void read(RenderedFrame& result);
   void fire(RenderedFrame& result);
 
   OpticsOptions optics_;

@@ -51,41 +51,45 @@ void locate(const RowCurve& curve, double first_dx, int columns, RowPlaces& plac
   locate(curve, first_dx, columns, places.whole.data(), w[0].data(), w[1].data(), w[2].data(), w[3].data());
 }
 
+// Four colours of a pixel: the widest vector that every x86-64 has, for others are taken apart before the kernel's
+// clones are made.
+using OnePixel = float __attribute__((vector_size(16)));
+
+inline OnePixel pixelAt(const float* from)
+{
+  OnePixel pixel;
+  std::memcpy(&pixel, from, sizeof pixel);
+  return pixel;
+}
+
 // Weights x those 4 x 4 pixels of four colours, the rows at `rows`.
 struct Taps {
   std::array<const float*, 4> rows;
   std::array<float, 4> across, down;
 };
 
-// Four colours of a pixel, and those of two side by side: the compiler does not find these vectors by itself.
-using OnePixel = float __attribute__((vector_size(16)));
-using TwoPixels = float __attribute__((vector_size(32)));
-
-// By reference, since the two clones of a kernel would hand vectors over in different ways.
-inline void readTwo(const Taps& taps, std::size_t first, TwoPixels& down)
+inline void addTaps(const Taps& taps, const Share& share, float* __restrict out)
 {
-  std::array<TwoPixels, 4> row;
-  for (std::size_t k = 0; k < 4; ++k) std::memcpy(&row[k], taps.rows[k] + first, sizeof(TwoPixels));
-  down = taps.down[0] * row[0] + taps.down[1] * row[1] + taps.down[2] * row[2] + taps.down[3] * row[3];
-}
-
-inline void addTaps(const Taps& taps, float weight, float* __restrict out)
-{
-  TwoPixels left, right;
-  readTwo(taps, 0, left);
-  readTwo(taps, 8, right);
-  const OnePixel sum = taps.across[0] * __builtin_shufflevector(left, left, 0, 1, 2, 3) +
-                       taps.across[1] * __builtin_shufflevector(left, left, 4, 5, 6, 7) +
-                       taps.across[2] * __builtin_shufflevector(right, right, 0, 1, 2, 3) +
-                       taps.across[3] * __builtin_shufflevector(right, right, 4, 5, 6, 7);
-  OnePixel pixel;
-  std::memcpy(&pixel, out, sizeof pixel);
-  pixel += weight * sum;
+  std::array<OnePixel, 4> column;
+  for (std::size_t k = 0; k < 4; ++k) {
+    column[k] = taps.down[0] * pixelAt(taps.rows[0] + 4 * k) + taps.down[1] * pixelAt(taps.rows[1] + 4 * k) +
+                taps.down[2] * pixelAt(taps.rows[2] + 4 * k) + taps.down[3] * pixelAt(taps.rows[3] + 4 * k);
+  }
+  const OnePixel before = share.is_first ? OnePixel{} : pixelAt(out);
+  const OnePixel pixel = before + share.weight * (taps.across[0] * column[0] + taps.across[1] * column[1] +
+                                                  taps.across[2] * column[2] + taps.across[3] * column[3]);
   std::memcpy(out, &pixel, sizeof pixel);
 }
 
+inline Taps tapsOf(const RowPlaces& across, const RowPlaces& down, std::size_t i)
+{
+  return {{},
+          {across.weights[0][i], across.weights[1][i], across.weights[2][i], across.weights[3][i]},
+          {down.weights[0][i], down.weights[1][i], down.weights[2][i], down.weights[3][i]}};
+}
+
 // At the canvas's border the pixels beyond it are those on it.
-void addAtBorder(const cv::Mat& canvas, int x, int y, Taps taps, float weight, float* out)
+void addAtBorder(const cv::Mat& canvas, int x, int y, Taps taps, const Share& share, float* out)
 {
   std::array<float, 64> pixels;
   for (int j = 0; j < 4; ++j) {
@@ -94,33 +98,48 @@ void addAtBorder(const cv::Mat& canvas, int x, int y, Taps taps, float weight, f
     for (int i = 0; i < 4; ++i) std::copy_n(row + 4 * std::clamp(x + i - 1, 0, canvas.cols - 1), 4, copy + 4 * i);
     taps.rows[static_cast<std::size_t>(j)] = copy;
   }
-  addTaps(taps, weight, out);
+  addTaps(taps, share, out);
 }
 
-EYESLAM_VECTOR_KERNEL void addRow(const cv::Mat& canvas, const RowPlaces& across, const RowPlaces& down,
-                                  std::size_t columns, float weight, float* out)
+// Whether all four about each place are on an axis of the canvas, so long.
+EYESLAM_VECTOR_KERNEL bool areInside(const int* whole, int columns, int length)
 {
-  const std::size_t step = canvas.step1();
+  int low = length, high = 0;
+  for (int i = 0; i < columns; ++i) {
+    low = std::min(low, whole[i]);
+    high = std::max(high, whole[i]);
+  }
+  return low >= 1 && high < length - 2;
+}
+
+EYESLAM_VECTOR_KERNEL void addInside(const float* canvas, std::ptrdiff_t step, const RowPlaces& across,
+                                     const RowPlaces& down, std::size_t columns, const Share& share,
+                                     float* __restrict out)
+{
   for (std::size_t i = 0; i < columns; ++i, out += 4) {
-    const int x = across.whole[i], y = down.whole[i];
-    Taps taps;
-    for (std::size_t k = 0; k < 4; ++k) {
-      taps.across[k] = across.weights[k][i];
-      taps.down[k] = down.weights[k][i];
-    }
-    if (x < 1 || y < 1 || x >= canvas.cols - 2 || y >= canvas.rows - 2) {
-      addAtBorder(canvas, x, y, taps, weight, out);
-      continue;
-    }
-    const float* row = canvas.ptr<float>(y - 1) + 4 * (x - 1);
+    const float* row = canvas + (down.whole[i] - 1) * step + 4 * (across.whole[i] - 1);
+    Taps taps = tapsOf(across, down, i);
     taps.rows = {row, row + step, row + 2 * step, row + 3 * step};
-    addTaps(taps, weight, out);
+    addTaps(taps, share, out);
+  }
+}
+
+void addRow(const cv::Mat& canvas, const RowPlaces& across, const RowPlaces& down, int columns, const Share& share,
+            float* out)
+{
+  if (areInside(across.whole.data(), columns, canvas.cols) && areInside(down.whole.data(), columns, canvas.rows)) {
+    addInside(canvas.ptr<float>(), static_cast<std::ptrdiff_t>(canvas.step1()), across, down,
+              static_cast<std::size_t>(columns), share, out);
+    return;
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(columns); ++i) {
+    addAtBorder(canvas, across.whole[i], down.whole[i], tapsOf(across, down, i), share, out + 4 * i);
   }
 }
 
 }  // namespace
 
-void accumulateView(const cv::Mat& canvas, const ViewMapping& mapping, float weight, cv::Mat& view)
+void accumulateView(const cv::Mat& canvas, const ViewMapping& mapping, const Share& share, cv::Mat& view)
 {
   CV_Assert(canvas.type() == CV_32FC4 && view.type() == CV_32FC4 && canvas.cols >= 4 && canvas.rows >= 4);
   const Eigen::Matrix2d linear = mapping.map_T_frame.linear();
@@ -137,7 +156,7 @@ void accumulateView(const cv::Mat& canvas, const ViewMapping& mapping, float wei
       const int columns = std::min(static_cast<int>(kChunk), view.cols - first);
       locate(x, first - centre.x(), columns, across);
       locate(y, first - centre.x(), columns, down);
-      addRow(canvas, across, down, static_cast<std::size_t>(columns), weight, view.ptr<float>(row) + 4 * first);
+      addRow(canvas, across, down, columns, share, view.ptr<float>(row) + 4 * first);
     }
   }
 }

@@ -16,12 +16,18 @@ struct ViewMapping {
   cv::Point2d map_origin;           ///< map coordinates of the canvas's pixel (0, 0), px
 };
 
-/// Adds `weight` x the canvas, as seen through the mapping, to `view`.
+/// What a view takes of one mapping, where it is the sum of several.
+struct Share {
+  float weight = 1.0F;
+  bool is_first = true;  ///< the view has none yet: what is in it does not count
+};
+
+/// Adds the share's weight x the canvas, as seen through the mapping, to `view`.
 ///
 /// Catmull-Rom interpolation at exact positions: OpenCV's warps round theirs to 1/32 px, more than the truth may be
 /// off. Positions outside the canvas take its border's colour.
 /// @param canvas  CV_32FC4, at least 4 x 4
 /// @param view    CV_32FC4, of the size of the view
-void accumulateView(const cv::Mat& canvas, const ViewMapping& mapping, float weight, cv::Mat& view);
+void accumulateView(const cv::Mat& canvas, const ViewMapping& mapping, const Share& share, cv::Mat& view);
 
 }  // namespace eyeslam::simulation

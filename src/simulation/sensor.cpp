@@ -14,10 +14,12 @@ constexpr std::size_t kTable = 1U << 17;
 constexpr float kWhite = 255.0F;
 
 // Of BGRx to BGR: in steps, so that the compiler's vectors take several values at once.
-EYESLAM_VECTOR_KERNEL void dropFourth(const float* in, int pixels, float black, float* __restrict level)
+EYESLAM_VECTOR_KERNEL void levelsOf(const float* in, const float* passed, float on, int pixels, float black,
+                                    float* __restrict level)
 {
   for (int i = 0; i < pixels; ++i) {
-    for (int c = 0; c < 3; ++c) level[3 * i + c] = std::clamp(black + kWhite * in[4 * i + c], 0.0F, kWhite);
+    const float share = on * passed[i];
+    for (int c = 0; c < 3; ++c) level[3 * i + c] = std::clamp(black + kWhite * (in[4 * i + c] * share), 0.0F, kWhite);
   }
 }
 
@@ -40,15 +42,15 @@ Sensor::Sensor(const SensorOptions& options, std::uint64_t seed) : options_(opti
   }
 }
 
-void Sensor::read(const cv::Mat& light, cv::Mat_<cv::Vec3b>& picture)
+void Sensor::read(const cv::Mat& light, const cv::Mat_<float>& passed, float on, cv::Mat_<cv::Vec3b>& picture)
 {
-  CV_Assert(light.type() == CV_32FC4);
+  CV_Assert(light.type() == CV_32FC4 && passed.size() == light.size());
   picture.create(light.size());
   const int values = 3 * light.cols;
   levels_.resize(static_cast<std::size_t>(values));
   repeatTable(kTable + levels_.size());
   for (int y = 0; y < light.rows; ++y) {
-    dropFourth(light.ptr<float>(y), light.cols, static_cast<float>(options_.black), levels_.data());
+    levelsOf(light.ptr<float>(y), passed[y], on, light.cols, static_cast<float>(options_.black), levels_.data());
     const std::size_t place = static_cast<std::size_t>(random_.bits()) % kTable;
     addNoise(levels_.data(), table_.data() + place, deviation_.data(), values, picture.ptr<std::uint8_t>(y));
   }

@@ -33,8 +33,9 @@ class Sensor {
  public:
   Sensor(const SensorOptions& options, std::uint64_t seed);
 
-  /// @param light  CV_32FC4, BGR in its first three channels, 1 = white
-  void read(const cv::Mat& light, cv::Mat_<cv::Vec3b>& picture);
+  /// @param light   CV_32FC4, BGR in its first three channels, 1 = white
+  /// @param passed  share of it that comes through, of its size; times `on`, share of the time
+  void read(const cv::Mat& light, const cv::Mat_<float>& passed, float on, cv::Mat_<cv::Vec3b>& picture);
 
  private:
   void repeatTable(std::size_t length);

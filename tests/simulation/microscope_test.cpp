@@ -88,7 +88,7 @@ TEST(RetinaSampler, ShowsAKnownPatternAtItsExactPlace)
   for (int i = 0; i < 12; ++i) {
     const retina::Pose2 pose{7.3 * std::sin(i), 11.1 * std::cos(2.0 * i), 0.01 * i, 1.0 + 0.004 * i};
     cv::Mat view(kView, CV_32FC4, cv::Scalar::all(0));
-    accumulateView(canvas, {pose, {}, kOrigin}, 1.0F, view);
+    accumulateView(canvas, {pose, {}, kOrigin}, {}, view);
     for (int y = 0; y < kView.height; ++y) {
       for (int x = 0; x < kView.width; ++x) {
         worst = std::max(worst, std::abs(view.at<cv::Vec4f>(y, x)[1] - expected(pose, x, y)));
@@ -156,8 +156,8 @@ TEST(Microscope, TheWarpVanishesAtTheImageCentreWithItsSlope)
   const cv::Mat canvas = patternCanvas();
   cv::Mat plain(kView, CV_32FC4, cv::Scalar::all(0));
   cv::Mat warped = plain.clone();
-  accumulateView(canvas, {{}, {}, kOrigin}, 1.0F, plain);
-  accumulateView(canvas, {{}, {4e-4, 2e-4, -3e-4, 1e-4, -2e-4, 4e-4}, kOrigin}, 1.0F, warped);
+  accumulateView(canvas, {{}, {}, kOrigin}, {}, plain);
+  accumulateView(canvas, {{}, {4e-4, 2e-4, -3e-4, 1e-4, -2e-4, 4e-4}, kOrigin}, {}, warped);
   const auto differenceAt = [&](int x, int y) {
     return std::abs(plain.at<cv::Vec4f>(y, x)[0] - warped.at<cv::Vec4f>(y, x)[0]);
   };
