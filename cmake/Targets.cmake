@@ -27,6 +27,13 @@ function(eyeslam_program name source)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
+# Most of a test's building are the headers of others and the optimiser, and most of its time is spent in the libraries.
+# -pthread, or the headers would not be the same for all.
+set(EYESLAM_TEST_OPTIONS -pthread $<$<CONFIG:Release>:-O1>)
+if(EYESLAM_SANITIZED)
+  list(APPEND EYESLAM_TEST_OPTIONS -O0)
+endif()
+
 # eyeslam_test(folder/name_test LIBRARIES targets [SLOW]): one executable and one ctest entry a test file. SLOW: not
 # under sanitizers, such as whole sequences; and optimised as the libraries are, for it spends its time.
 function(eyeslam_test path)
@@ -46,8 +53,7 @@ function(eyeslam_test path)
     set_tests_properties(${name} PROPERTIES LABELS slow)
     set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ${EYESLAM_SANITIZED})
   else()
-    # Two thirds of a test's building are headers and the optimiser; -pthread, or the headers would not be the same.
-    target_compile_options(${name} PRIVATE -pthread $<$<CONFIG:Release>:-O1>)
+    target_compile_options(${name} PRIVATE ${EYESLAM_TEST_OPTIONS})
     target_precompile_headers(${name} REUSE_FROM eyeslam_test_headers)
   endif()
 endfunction()

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """tidy.py BUILD_DIR [MINUTES]: runs clang-tidy on our own sources, again only where a source or a header of ours changed.
 
-Those that were written last come first; after so many minutes no other one is begun, and it says how many were left.
+It looks at what BUILD_DIR compiles at a time: of a unity build that is many sources, whose headers are read and judged
+once. What was written last comes first; after so many minutes no other is begun, and it says how many sources were left.
 """
 import concurrent.futures
 import hashlib
@@ -18,6 +19,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 CACHE = ROOT / "build" / "tidy"
 LEFT = object()
 INCLUDE = re.compile(r'^\s*#include\s*"eyeslam/([^"]+)"', re.M)
+UNITED = re.compile(r'^#include "([^"]+\.cpp)"', re.M)
 
 
 def headers(path, seen):
@@ -30,21 +32,33 @@ def headers(path, seen):
     return seen
 
 
-def key(entry):
+def sources(entry):
+    """What one call of the compiler takes: the source itself, or those that a unity source includes."""
     path = pathlib.Path(entry["file"])
+    return [pathlib.Path(name) for name in UNITED.findall(path.read_text())] if "Unity" in path.parts else [path]
+
+
+def is_ours(entry):
+    return all(path.is_relative_to(ROOT) and path.relative_to(ROOT).parts[0] in ("src", "apps") for path in sources(entry))
+
+
+def key(entry):
     digest = hashlib.sha256(entry["command"].encode())
-    beside = sorted(path.parent.glob("*.h"))
-    for part in (ROOT / ".clang-tidy", path, *sorted(headers(path, set(beside)))):
-        digest.update(part.read_bytes())
+    for source in sources(entry):
+        for part in (source, *sorted(headers(source, set(source.parent.glob("*.h"))))):
+            digest.update(part.read_bytes())
+    digest.update((ROOT / ".clang-tidy").read_bytes())
     return digest.hexdigest()
 
 
 def check(build, entry):
-    """None when the file is clean, else what clang-tidy says."""
+    """None when it is clean, else what clang-tidy says."""
     mark = CACHE / key(entry)
     if mark.exists():
         return None
-    done = subprocess.run(["clang-tidy-14", "--quiet", "-p", build, entry["file"]], capture_output=True, text=True)
+    # A unity source includes sources by its nature.
+    done = subprocess.run(["clang-tidy-14", "--quiet", "--checks=-bugprone-suspicious-include", "-p", build, entry["file"]],
+                          capture_output=True, text=True)
     if done.returncode:
         return done.stdout + done.stderr
     mark.touch()
@@ -55,18 +69,18 @@ def main():
     build = sys.argv[1]
     end = time.monotonic() + 60.0 * float(sys.argv[2]) if len(sys.argv) > 2 else float("inf")
     CACHE.mkdir(parents=True, exist_ok=True)
-    entries = [entry for entry in json.loads((pathlib.Path(build) / "compile_commands.json").read_text())
-               if pathlib.Path(entry["file"]).relative_to(ROOT).parts[0] in ("src", "apps")]
-    entries.sort(key=lambda entry: os.path.getmtime(entry["file"]), reverse=True)
+    entries = [entry for entry in json.loads((pathlib.Path(build) / "compile_commands.json").read_text()) if is_ours(entry)]
+    entries.sort(key=lambda entry: max(os.path.getmtime(source) for source in sources(entry)), reverse=True)
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         complaints = left = 0
-        for said in pool.map(lambda entry: check(build, entry) if time.monotonic() < end else LEFT, entries):
-            if said is LEFT:
-                left += 1
-            elif said:
+        said = pool.map(lambda entry: check(build, entry) if time.monotonic() < end else LEFT, entries)
+        for entry, words in zip(entries, said):
+            if words is LEFT:
+                left += len(sources(entry))
+            elif words:
                 complaints += 1
-                print(said, flush=True)
-    print(f"{len(entries) - left} sources, {complaints} with findings; {left} not looked at")
+                print(words, flush=True)
+    print(f"{sum(len(sources(entry)) for entry in entries) - left} sources, {complaints} with findings; {left} not looked at")
     sys.exit(1 if complaints or not entries else 0)
 
 

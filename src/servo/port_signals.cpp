@@ -8,7 +8,7 @@ namespace eyeslam::servo {
 
 namespace {
 
-constexpr std::int64_t kFarthest = 4;  // times the time that the slope was taken over: a line holds no longer
+constexpr std::int64_t kHoldsFor = 4;  // times the time that the slope was taken over: a line holds no longer
 
 }  // namespace
 
@@ -38,7 +38,7 @@ PortSignals::Signals PortSignals::at(std::int64_t utime) const noexcept
   if (utime <= newest || past_.size() < 2) return past_.at(utime);
   const std::size_t age = std::min(past_.firstAtOrBefore(newest - slope_), past_.size() - 1);
   const Signals slope = (past_.value(0) - past_.value(age)) / seconds(newest - past_.utime(age));
-  return past_.value(0) + seconds(std::min(utime - newest, kFarthest * slope_)) * slope;
+  return past_.value(0) + seconds(std::min(utime - newest, kHoldsFor * slope_)) * slope;
 }
 
 }  // namespace eyeslam::servo

@@ -20,6 +20,9 @@ const cv::Vec3f kDiscRim(0.29F, 0.54F, 1.0F);
 // Absorption by blood, per um of its depth, BGR: thick vessels in HRF keep 0.83, 0.6 and 0.935 of the light.
 const cv::Vec3f kVenous(0.0028F, 0.0080F, 0.0014F);
 const cv::Vec3f kArterial(0.0021F, 0.0066F, 0.0006F);
+// Where what fovea and disc add is lost in rounding, to the bit: not computed there.
+constexpr double kFarFromFovea_um = 2200.0;
+constexpr double kFarFromDisc = 1.6;  // of its radius
 
 struct Layers {
   cv::Mat_<float> broad;    // pigment over mm
@@ -76,7 +79,8 @@ cv::Mat_<float> fibresOf(const RetinaPlan& plan, cv::Size size, double um_per_px
       const double distance = std::hypot(dx, dy);
       const double fade = std::exp(-distance / 2200.0) * retina::smoothstep((distance - plan.disc_radius) / 500.0);
       if (fade < 0.02) continue;
-      const double turn = std::atan2(dy, dx) + 0.25 * std::sin(2.0 * std::atan2(dy, dx)) * distance / 4000.0;
+      const double direction = std::atan2(dy, dx);
+      const double turn = direction + 0.25 * std::sin(2.0 * direction) * distance / 4000.0;
       const auto u = static_cast<float>((turn / 6.2832 + 0.55) * 1300.0);
       const auto v = static_cast<float>(std::min(distance / 110.0, 90.0));
       const int iu = std::clamp(static_cast<int>(u), 0, noise.cols - 2);
@@ -109,8 +113,9 @@ class Ground {
   {
     const Eigen::Vector2d place = options_.um_per_px * Eigen::Vector2d(x, y);
     const double macula = (place - plan_.fovea).norm();
-    const double dark = 0.30 * std::exp(-macula * macula / (2.0 * 900.0 * 900.0)) +
-                        0.16 * std::exp(-macula * macula / (2.0 * 220.0 * 220.0));
+    const double wide = 0.30 * std::exp(-macula * macula / (2.0 * 900.0 * 900.0));
+    const double dark =
+        macula > kFarFromFovea_um ? wide : wide + 0.16 * std::exp(-macula * macula / (2.0 * 220.0 * 220.0));
     const double pigment =
         options_.texture * (0.05 * layers_.broad(y, x) + 0.028 * layers_.mottled(y, x) + 0.022 * layers_.grain(y, x)) +
         options_.choroid * 0.035 * layers_.choroid(y, x);
@@ -130,6 +135,7 @@ class Ground {
   {
     // A disc is taller than wide, with a paler cup; a dark crescent of pigment lies at its temporal edge.
     const Eigen::Vector2d offset = (place - plan_.disc).cwiseQuotient(Eigen::Vector2d(0.93, 1.06)) / plan_.disc_radius;
+    if (offset.squaredNorm() > kFarFromDisc * kFarFromDisc) return colour;
     const double wavy = offset.norm() * (1.0 + 0.03 * std::sin(3.0 * std::atan2(offset.y(), offset.x()) + 5.0 * tilt_));
     const double towards_fovea = offset.x() * (plan_.fovea.x() > plan_.disc.x() ? 1.0 : -1.0);
     const double crescent =

@@ -17,7 +17,7 @@ namespace eyeslam::tracking {
 namespace {
 
 const cv::Scalar kGround(26, 22, 20), kGutter(12, 10, 9), kInk(236, 236, 236), kQuiet(170, 166, 160);
-const cv::Scalar kPoint(120, 255, 120), kView(255, 255, 255), kTrail(80, 220, 255), kTool(255, 200, 60);
+const cv::Scalar kPoint(120, 255, 120), kView(255, 255, 255), kTrail(80, 220, 255), kToolLine(255, 200, 60);
 const cv::Scalar kGood(120, 220, 120), kBad(90, 90, 255);
 constexpr int kPanelGap = 4;          // px between panels
 constexpr int kStatus = 30;           // px of the line below
@@ -195,7 +195,7 @@ void Overlay::drawInstrument(const ToolTip& tip, cv::Mat& panel) const
   const cv::Point2d across(-along.y, along.x);
   const double half = tip.shaft_width_px * panel_per_px_ / 2.0;
   for (const double side : {-half, half}) {
-    line(panel, at - 4.0 * half * along + side * across, at - 40.0 * half * along + side * across, kTool);
+    line(panel, at - 4.0 * half * along + side * across, at - 40.0 * half * along + side * across, kToolLine);
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> spread(tip.covariance);
   const double turn = std::atan2(spread.eigenvectors()(1, 1), spread.eigenvectors()(0, 1)) * 180.0 / kPi;
@@ -206,7 +206,7 @@ void Overlay::drawInstrument(const ToolTip& tip, cv::Mat& panel) const
               {cv::Point2f(at),
                {static_cast<float>(2.0 * radius(1)), static_cast<float>(2.0 * radius(0))},
                static_cast<float>(turn)},
-              kTool, 1, cv::LINE_AA);
+              kToolLine, 1, cv::LINE_AA);
   ring(panel, at, 1.2, kView, -1);
 }
 

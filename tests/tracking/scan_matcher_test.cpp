@@ -8,6 +8,7 @@
 
 #include "support/allocation_counter.h"
 #include "support/exhaustive_search.h"
+#include "support/sanitized.h"
 #include "support/vessel_scenes.h"
 
 using namespace eyeslam;
@@ -74,7 +75,7 @@ TEST(ScanMatcher, FindsTheMaximumThatExhaustiveSearchFinds)
 {
   std::mt19937 random(1);
   ScanMatcher matcher(acceptingAnything());
-  for (int i = 0; i < 3000 && !HasFailure(); ++i) {
+  for (int i = 0; i < support::cases(3000) && !HasFailure(); ++i) {
     SCOPED_TRACE(i);
     const Scene scene = randomScene(random);
     expectSame(matcher.search(scene.points, scene.map, scene.window),
@@ -88,7 +89,7 @@ TEST(ScanMatcher, FindsTheMaximumThatExhaustiveSearchFindsWhenRivalsAreLookedFor
   ScanMatcherOptions options = acceptingAnything();
   options.ambiguous_ratio = 0.8;
   ScanMatcher matcher(options);
-  for (int i = 0; i < 500 && !HasFailure(); ++i) {
+  for (int i = 0; i < support::cases(500) && !HasFailure(); ++i) {
     SCOPED_TRACE(i);
     const Scene scene = randomScene(random);
     expectSame(matcher.search(scene.points, scene.map, scene.window),
