@@ -68,6 +68,7 @@ void Illumination::lightAt(double t, cv::Mat_<float>& light) const
   // A product of what depends on x and what depends on y.
   const auto falls = [sigma](double away) { return std::exp(-away * away / (2.0 * sigma * sigma)); };
   std::vector<double> across;
+  across.reserve(static_cast<std::size_t>(cells.cols));
   for (int column = 0; column < cells.cols; ++column) across.push_back(falls(kLightCell * (column + 0.5) - x0));
   for (int row = 0; row < cells.rows; ++row) {
     const double down = falls(kLightCell * (row + 0.5) - y0);

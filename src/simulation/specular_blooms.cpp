@@ -75,6 +75,7 @@ void addGlow(cv::Mat& picture, cv::Point2d centre, double radius, const cv::Scal
     return std::exp(-fading * away * away / (radius * radius));
   };
   std::vector<cv::Vec2d> across;
+  across.reserve(static_cast<std::size_t>(std::max(area.width, 0)));
   for (int x = area.x; x < area.x + area.width; ++x) {
     across.emplace_back(1.03 * falls(kGlowFading, x - centre.x), 0.8 * falls(kCoreFading, x - centre.x));
   }

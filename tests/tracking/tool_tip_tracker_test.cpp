@@ -223,7 +223,7 @@ TEST(ToolTipTracker, SaysHowLittleItKnowsWhereABloomGlowsBesideTheTip)
   const Instrument tool{{430.0, 310.0}, 140.0, 32.0};
   double farthest = 0.0;
   for (const double radius : {6.0, 8.0, 11.0, 15.0}) {
-    for (int turn = 0; turn < 24; turn += support::kSanitized ? 4 : 1) {
+    for (int turn = 0; turn < 24; turn += eyeslam::support::kSanitized ? 4 : 1) {
       for (const double apart : {0.5, 1.0, 1.4, 1.8, 2.2, 2.6, 3.0}) {
         const double angle = turn * CV_PI / 12.0;
         const cv::Point2d at = tool.tip + apart * radius * cv::Point2d(std::cos(angle), std::sin(angle));
@@ -236,7 +236,7 @@ TEST(ToolTipTracker, SaysHowLittleItKnowsWhereABloomGlowsBesideTheTip)
       }
     }
   }
-  EXPECT_TRUE(farthest > 8.0 || support::kSanitized) << "no glow led it on, so that this proves nothing";
+  EXPECT_TRUE(farthest > 8.0 || eyeslam::support::kSanitized) << "no glow led it on, so that this proves nothing";
 }
 
 TEST(ToolTipTracker, ReadsSixteenBitsAlike)
