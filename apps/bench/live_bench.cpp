@@ -64,7 +64,7 @@ void BenchManipulator::end()
 
 bool BenchManipulator::step(const CycleStart& start)
 {
-  link_.drain({start.monotonic, start.utime});
+  link_.drain(receiveTime);
   for (; left_out_ < start.left_out; ++left_out_) hardware_.step({start.monotonic, start.utime});
   hardware_.step({start.monotonic, start.utime});
   hardware_.frameDue();

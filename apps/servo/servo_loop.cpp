@@ -12,15 +12,15 @@ constexpr std::size_t kMostMessages = 64;
 }  // namespace
 
 ServoLoop::ServoLoop(const servo::ServoOptions& options, messaging::Link& link, ServoExchanges& exchanges,
-                     bool real_time, CycleRecord& record)
-    : link_(link), exchanges_(exchanges), record_(record), real_time_(real_time), servo_(options, link)
+                     bool real_time, CycleRecord& record, messaging::Clocks clocks)
+    : link_(link), clocks_(clocks), exchanges_(exchanges), record_(record), real_time_(real_time), servo_(options, link)
 {}
 
 bool ServoLoop::cycle(const CycleStart& start)
 {
   record_.add(start);
   const messaging::ReceiveTime now{start.monotonic, start.utime};
-  link_.drain(now, kMostMessages);
+  link_.drain(clocks_, kMostMessages);
   takeWhatWasPrepared(start.utime);
   const bool closes = exchanges_.closes;
   if (closes) servo_.close();

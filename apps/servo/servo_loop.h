@@ -20,7 +20,7 @@ class ServoLoop {
   /// @param link       the loop's own: it hears messages of fixed size only
   /// @param real_time  whether the thread is scheduled so and its memory locked
   ServoLoop(const servo::ServoOptions& options, messaging::Link& link, ServoExchanges& exchanges, bool real_time,
-            CycleRecord& record);
+            CycleRecord& record, messaging::Clocks clocks);
 
   /// @return whether there shall be another cycle: not when it closes and nothing is commanded any more
   bool cycle(const CycleStart& start);
@@ -31,6 +31,7 @@ class ServoLoop {
   void leavePlan();
 
   messaging::Link& link_;
+  messaging::Clocks clocks_;
   ServoExchanges& exchanges_;
   CycleRecord& record_;
   bool real_time_;

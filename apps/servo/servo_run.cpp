@@ -82,7 +82,7 @@ void ServoRun::startLoop()
   const bool real_time = unlocked.empty() && section.refusal().empty();
   if (!unlocked.empty()) say("not in real time: " + unlocked);
   if (!section.refusal().empty()) say("not in real time: " + section.refusal());
-  loop_.emplace(options_.servo, loop_link_, exchanges_, real_time, record_);
+  loop_.emplace(options_.servo, loop_link_, exchanges_, real_time, record_, receiveTime);
   thread_.emplace(RealTimeLoopSetting{1000, kLoopPriority},
                   [this](const CycleStart& start) { return loop_->cycle(start); });
   say(real_time ? "running at 1 kHz, in real time" : "running at 1 kHz");
@@ -91,9 +91,8 @@ void ServoRun::startLoop()
 void ServoRun::turn()
 {
   usleep(kTurn_us);
-  const messaging::ReceiveTime now = receiveTime();
-  patient_link_.drain(now);
-  desk_.work(now);
+  patient_link_.drain(receiveTime);
+  desk_.work(receiveTime());
   if (exchanges_.statuses.take(status_)) sayStatus();
 }
 

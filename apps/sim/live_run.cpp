@@ -108,7 +108,7 @@ void LiveRun::run()
 void LiveRun::watch()
 {
   usleep(kTurn_us);
-  patient_link_.drain(receiveTime());
+  patient_link_.drain(receiveTime);
   if (arguments_.quiet) return;
   sayController();
   sayWhereTheTaskIs();

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "command_line/program.h"
+#include "link/program_link.h"
 
 namespace eyeslam::apps {
 namespace {
@@ -55,7 +56,7 @@ simulation::SurgeonTask LiveWorld::surgeonTask(double t_s) const
 
 bool LiveWorld::cycle(const CycleStart& start)
 {
-  link_.drain({start.monotonic, start.utime});
+  link_.drain(receiveTime);
   catch_up_.run(start, [this](std::int64_t monotonic, std::int64_t utime) { step({monotonic, utime}); });
   return setting_.duration_s <= 0.0 || 1e-3 * static_cast<double>(steps_) < setting_.duration_s;
 }

@@ -32,7 +32,7 @@ MessagePublisher::MessagePublisher(const std::string& url, const std::string& ke
 void MessagePublisher::onRead(const files::VideoFrame& frame)
 {
   const messaging::ReceiveTime now = receiveTime();
-  link_.drain(now);
+  link_.drain(receiveTime);
   vision_.setFrameRate(frame_rate_.follow(frame.utime));
   stamp_ = {frame.utime > 0 ? frame.utime : now.utime, frame.number, frame.exposure};
 }

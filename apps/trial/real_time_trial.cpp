@@ -142,7 +142,7 @@ void RealTimeTrial::startWorld()
 
 bool RealTimeTrial::cycle(const CycleStart& start)
 {
-  link_.drain({start.monotonic, start.utime});
+  link_.drain(receiveTime);
   catch_up_.run(start, [this](std::int64_t monotonic, std::int64_t utime) {
     if (world_->isOver()) return;
     const messaging::ReceiveTime now{monotonic, utime};

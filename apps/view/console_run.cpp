@@ -86,10 +86,9 @@ void ConsoleRun::turn(bool reads)
   } else {
     usleep(kTurn_ms * 1000);
   }
-  const messaging::ReceiveTime now = receiveTime();
-  link_.drain(now);
+  link_.drain(receiveTime);
   try {
-    console_.work(now);
+    console_.work(receiveTime());
   } catch (const CommandError& error) {
     if (!terminal_) throw CommandError(fmt::format("line {}: {}", line_, error.what()));
     fmt::print(stderr, "{}\n", error.what());

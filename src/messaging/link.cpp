@@ -117,6 +117,18 @@ bool Link::wait(int timeout_ms)
 std::size_t Link::drain(const ReceiveTime& now, std::size_t most)
 {
   now_ = now;
+  clocks_ = nullptr;
+  return handle(most);
+}
+
+std::size_t Link::drain(Clocks clocks, std::size_t most)
+{
+  clocks_ = clocks;
+  return handle(most);
+}
+
+std::size_t Link::handle(std::size_t most)
+{
   std::size_t handled = 0;
   while (handled < most && lcm_->handleTimeout(0) > 0) ++handled;
   return handled;
@@ -125,6 +137,7 @@ std::size_t Link::drain(const ReceiveTime& now, std::size_t most)
 bool Link::step()
 {
   now_.reset();
+  clocks_ = nullptr;
   return lcm_->handleTimeout(0) > 0;
 }
 

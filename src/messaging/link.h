@@ -20,6 +20,9 @@ class LCM;
 
 namespace eyeslam::messaging {
 
+/// Both of a program's clocks, now.
+using Clocks = ReceiveTime (*)();
+
 /// One program's connection to LCM. One thread drains it (LCM hangs when two do); publishing is free to all.
 ///
 ///   Link link("", session, readKey("micron.key"));
@@ -62,6 +65,10 @@ class Link {
   /// @return messages handled; fewer than `most` when there are no more
   std::size_t drain(const ReceiveTime& now, std::size_t most = 10'000);
 
+  /// The same by clocks that go on meanwhile: a message that comes while its reader is kept from the processor was not
+  /// received before it was sent, which would look like a step of its sender's clock.
+  std::size_t drain(Clocks clocks, std::size_t most = 10'000);
+
   /// Lock step, for reading logs: hands over one message, received at the very time at which it was sent.
   /// @return false at the end of the log (and at damage, which LCM's reader does not tell apart)
   bool step();
@@ -69,16 +76,20 @@ class Link {
   /// When the message that is being handled was received.
   ReceiveTime receivedAt(const MessageHeader& header) const
   {
+    if (clocks_ != nullptr) return clocks_();
     return now_.value_or(ReceiveTime{header.utime_sent, header.utime_sent});
   }
 
  private:
+  std::size_t handle(std::size_t most);
+
   std::string url_;
   std::int64_t session_;
   std::optional<Authenticator> authenticator_;
   std::unique_ptr<lcm::LCM> lcm_;
   std::unique_ptr<std::mutex> file_;  // of file:// alone: LCM guards its sockets itself, but not its files
   std::optional<ReceiveTime> now_;    // none in lock step
+  Clocks clocks_ = nullptr;           // none where the caller says what time it is
 };
 
 /// Publishes one type on one channel: fills what every message has (contracts, section 4), encodes and signs it.

@@ -15,6 +15,7 @@ namespace {
 using Warnings = std::vector<std::string>;
 
 constexpr std::size_t kEventsNamed = 6, kTrialsNamed = 60;
+constexpr double kMostLeftOut = 0.1;    // of the frames
 constexpr double kThickVessel = 50e-6;  // m, that no burn may touch; issue 17
 
 std::string counted(std::int64_t count, const std::string& thing)
@@ -64,6 +65,11 @@ void warnOfEvents(const TrialRecord& record, Warnings& warnings)
 
 void warnOfGaps(const TrialRecord& record, Warnings& warnings)
 {
+  if (record.left_out > kMostLeftOut)
+    warnings.push_back(fmt::format(
+        "the tracker had no time for {:.0f} % of the frames: give a trial in real time two idle cores, or leave "
+        "--real-time out",
+        100.0 * record.left_out));
   const auto missing = [&](bool is, const char* what) {
     if (is) warnings.push_back(fmt::format("missing: {}", what));
   };

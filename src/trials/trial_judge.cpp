@@ -160,6 +160,7 @@ void TrialJudge::take(const retina_pose_t& pose, std::int64_t utime)
   newest_frame_ = pose.tracked ? pose.utime : newest_frame_;
   const auto frame = frames_.find(pose.frame);
   if (!first_frame_ && frame != frames_.end()) first_frame_ = frame->second.truth;  // the tracker's map begins there
+  if (frame != frames_.end()) ++poses_;
   if (!counts() || frame == frames_.end()) return;
   ++frames_seen_;
   pose_ages_s_.push_back(kMicro * static_cast<double>(utime - pose.utime));

@@ -112,6 +112,7 @@ class TrialJudge {
 
   std::map<std::int64_t, SeenFrame> frames_;
   std::optional<retina::Pose2> first_frame_;
+  std::int64_t poses_ = 0;  // of all frames; the others count only what is scored
   std::int64_t frames_seen_ = 0, frames_tracked_ = 0, newest_frame_ = 0;
   std::vector<double> pose_ages_s_, frame_to_command_s_, computation_s_;
 

@@ -18,7 +18,8 @@ using messaging::WantedMode;
 namespace {
 
 constexpr std::int64_t kWishPeriods = 50;         // 20 Hz (contracts, section 4)
-constexpr double kReady_s = 1.0;                  // then a map is there
+constexpr double kEvaluated_s = 2.0;              // after its sweep a calibration is there, or comes no more
+constexpr double kPause_s = 0.5;                  // until the servo has heard that he wants none
 constexpr double kLooks_s = 1.5;                  // at the map, before he chooses
 constexpr double kRearm_s = 1.0;                  // until he has understood that the servo holds
 constexpr std::int64_t kSession = 1'000'000'000;  // apart from the servo's, whose channel he shares
@@ -75,11 +76,17 @@ void TrialOperator::step(double t_s, const messaging::ReceiveTime& now)
 void TrialOperator::goOn(double t_s, std::int64_t utime)
 {
   const messaging::PublishedRegistration* camera = registrations_.latest();
-  if (phase_ == Phase::ready && t_s >= kReady_s)
+  if (phase_ == Phase::ready && t_s >= ready_until_s_) {
     phase_ = needsCamera(setting_.scenario) ? Phase::calibrates : Phase::waits;
+    calibrates_from_s_ = t_s;
+  }
   if (phase_ == Phase::calibrates && camera && camera->valid) {
     phase_ = Phase::waits;
     waits_from_s_ = t_s;
+  }
+  if (phase_ == Phase::calibrates && t_s >= calibrates_from_s_ + setting_.servo.sweep.duration_s + kEvaluated_s) {
+    phase_ = Phase::ready;  // too few frames, or the servo held meanwhile: once more
+    ready_until_s_ = t_s + kPause_s;
   }
   if (phase_ == Phase::waits && t_s >= waits_from_s_ + kLooks_s) choose(t_s, utime);
 }
@@ -125,7 +132,8 @@ void TrialOperator::rearm(double t_s)
 {
   const messaging::ServoStatus* status = statuses_.latest();
   const bool stands = status && (status->state == ServoState::hold || status->state == ServoState::fault);
-  if (!stands || setting_.scenario.fault.must != "go_on") {
+  const bool goes_on = phase_ != Phase::guided || setting_.scenario.fault.must == "go_on";
+  if (!stands || !goes_on) {
     held_s_.reset();
     return;
   }

@@ -61,7 +61,8 @@ class TrialOperator {
   messaging::Publisher<burn_plan_t> plans_;
   Phase phase_ = Phase::ready;
   std::int64_t periods_ = 0;
-  double waits_from_s_ = 0.0;
+  double ready_until_s_ = 1.0;  // then a map is there
+  double calibrates_from_s_ = 0.0, waits_from_s_ = 0.0;
   std::optional<double> asked_s_, held_s_;
   std::int64_t rearmed_ = 0;
   messaging::WantedFixture fixture_;

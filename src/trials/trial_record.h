@@ -78,6 +78,7 @@ struct TrialRecord {
   double fastest_tip = 0.0;                ///< m/s, from the start, calibration included
   double worst_pivot = 0.0;                ///< m, of the shaft from the commanded centre of motion
   std::int64_t frames = 0, tracked = 0;    ///< whose poses came
+  double left_out = 0.0;                   ///< [0, 1], of all frames: no pose came, for the tracker had no time
   std::vector<double> pose_errors_px;      ///< half-resolution px, a tracked frame each
   std::vector<double> pose_ages_s;         ///< of the newest pose at its arrival, since mid-exposure
   std::vector<double> frame_to_command_s;  ///< mid-exposure to the first command that uses it

@@ -85,6 +85,7 @@ TrialRecord TrialJudge::record() const
   record.worst_pivot = worst_pivot_;
   record.frames = frames_seen_;
   record.tracked = frames_tracked_;
+  if (poses_ > 0) record.left_out = 1.0 - share(static_cast<std::size_t>(poses_), frames_.size());
 
   TrialScore& score = record.score;
   score.scenario = name_.scenario;

@@ -10,6 +10,7 @@ import sys
 import tree
 from documents_test import commands, documents
 
+CHANCES = 3  # of what runs in real time, for this computer may have other work
 SKIPPED = ("./test", "git ", "cmake ")  # this run; fetching; what ./test has done
 
 
@@ -26,7 +27,8 @@ def main():
             if line.startswith(SKIPPED):
                 continue
             print(f"{path}: {line}", flush=True)
-            if not run(line.replace("my_video.mp4", f"{sequence}/video.mp4"), environment):
+            chances = CHANCES if "--real-time" in line else 1
+            if not any(run(line.replace("my_video.mp4", f"{sequence}/video.mp4"), environment) for _ in range(chances)):
                 failed.append(f"{path}: {line}")
     print("\n".join(f"failed: {line}" for line in failed))
     sys.exit(1 if failed else 0)

@@ -252,6 +252,35 @@ TEST_F(Controller, TakesAMessageWithoutAllocating)
   EXPECT_EQ(commands_.accepted(), 6);
 }
 
+std::int64_t running = 0;  // us, of both clocks
+ReceiveTime runningClocks() { return {running, kUtime + running}; }
+
+// A busy computer keeps a reader from the processor, while the sender goes on.
+TEST(Subscription, WhatComesWhileItsReaderStandsStillIsNoStepOfTheSendersClock)
+{
+  for (const bool live : {true, false}) {
+    running = 1'000'000;
+    Link link("memq://", 1, {});
+    Publisher<micron_state_t> states(link);
+    const auto send = [&] { states.publish(MicronState(), kUtime + running, kUtime + running); };
+    Subscription<mark_t> standstill(link, [&](const mark_t&, const MessageHeader&) {
+      running += 300 * kMillisecond;
+      send();
+    });
+    Subscription<micron_state_t> heard(link);
+    const auto drain = [&] { live ? link.drain(runningClocks) : link.drain(runningClocks()); };
+    for (int i = 0; i < 200; ++i, running += kMillisecond) {
+      send();
+      drain();
+    }
+    mark_t mark{};
+    Publisher<mark_t>(link).publish(mark, kUtime + running);
+    drain();
+    EXPECT_EQ(heard.accepted(), live ? 201 : 200);
+    EXPECT_EQ(heard.refused(Reason::clock_stepped), live ? 0 : 1) << "by clocks that were read before";
+  }
+}
+
 TEST(Subscription, HandsEveryAcceptedMessageToItsHandler)
 {
   Link link("memq://", 1, {});

@@ -17,7 +17,10 @@ FOLDER = sys.argv.pop(1) if len(sys.argv) > 1 else "."
 class Running:
     """A program whose lines are read while it runs."""
 
+    started = []  # those of the test at hand, whose lines tell together why one did not come
+
     def __init__(self, name, *arguments):
+        self.started.append(self)
         self.name = name
         self.lines = []
         self.process = subprocess.Popen([os.path.join(FOLDER, name), *arguments], stdin=subprocess.PIPE,
@@ -45,7 +48,8 @@ class Running:
                 if found:
                     return found
             if time.monotonic() > end or (self.process.poll() is not None and not self.reader.is_alive()):
-                raise AssertionError(f"no line with '{pattern}' in {seconds} s\n{self.text()}")
+                raise AssertionError(f"no line with '{pattern}' from {self.name} in {seconds} s\n" +
+                                     "\n".join(program.text() for program in self.started))
             time.sleep(0.02)
 
     def end(self, number=signal.SIGINT, seconds=30):
@@ -59,6 +63,7 @@ class Running:
 
 class LiveCase(unittest.TestCase):
     def setUp(self):
+        Running.started.clear()
         self.folder = tempfile.mkdtemp(prefix="eyeslam_live_test_")
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
         # A group of its own for each test: others may run beside it.

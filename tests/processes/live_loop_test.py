@@ -7,6 +7,7 @@ import unittest
 from live_case import LiveCase
 
 SIZE = (400, 304)
+MOST_ATTEMPTS = 5  # at a calibration: a computer with other work may let the servo hold
 
 
 class Loop(LiveCase):
@@ -31,21 +32,26 @@ class Loop(LiveCase):
         self.view.tell("await map 60")
         self.view.tell("ready")
         self.view.tell("await ready")
-        self.view.tell("calibrate")
-        self.view.expect("servo: assist", 60)
-        self.servo.expect("calibrated: ", 60)
+        for attempt in range(MOST_ATTEMPTS):  # as a human would who sees that the servo holds
+            before = len(self.servo.lines)
+            self.view.tell("calibrate")
+            if self.servo.expect(r"calibrated: |calibration failed: |hold: |fault: ", 60, since=before).group() == "calibrated: ":
+                break
+            self.assertLess(attempt, MOST_ATTEMPTS - 1, self.servo.text())
+            for line in ("ready", "rearm", "await ready"):
+                self.view.tell(line)
         self.view.tell("await registration")
         self.view.tell("ready")  # from Assist, a fixture that cannot guide at once would be a reason to hold
         self.view.tell("await ready")
 
     def hold(self, seconds):
-        """As a human would: where the computer had no time for a quarter of a second, the servo holds, and he re-arms."""
+        """As a human would: where the computer had no time for 50 ms, the servo holds, and he re-arms."""
         end = time.monotonic() + seconds
         seen = len(self.view.lines)
         while time.monotonic() < end:
             time.sleep(0.1)
             news, seen = self.view.lines[seen:], len(self.view.lines)
-            if any("servo: hold: pose_stale" in line for line in news):
+            if any("servo: hold: " in line for line in news):
                 self.view.tell("rearm")
                 self.view.tell("assist")
 

@@ -126,7 +126,7 @@ TEST(ServoThreads, RunBesideEachOtherUntilTheControllerHasTheTip)
   ServoExchanges exchanges;
   CycleRecord record(10'000);
   ServoDesk desk(options, patient_link, exchanges, {[](const auto&) {}, [](const auto&) {}});
-  ServoLoop loop(options.servo, loop_link, exchanges, false, record);
+  ServoLoop loop(options.servo, loop_link, exchanges, false, record, now);
   RealTimeLoop thread({}, [&](const CycleStart& start) { return loop.cycle(start); });
   Bench bench;
   Vision vision(patient_link);

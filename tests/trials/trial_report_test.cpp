@@ -79,6 +79,15 @@ TEST_F(TrialReports, WarnBeforeTheySayAnythingElse)
   EXPECT_LT(studyReport({record}).find("failed: blackout"), studyReport({record}).find("<figure>"));
 }
 
+TEST_F(TrialReports, WarnWhereTheTrackerHadNoTime)
+{
+  TrialRecord record = make.traced("hard", 0);
+  record.left_out = 0.05;
+  EXPECT_FALSE(has(trialReport(record), "class=\"warnings\""));
+  record.left_out = 0.41;
+  EXPECT_TRUE(has(trialReport(record), "no time for 41 % of the frames"));
+}
+
 TEST_F(TrialReports, DoNotWarnOfAHoldThatHadToBe)
 {
   TrialRecord record = make.traced("hard", 0);
