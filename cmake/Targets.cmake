@@ -28,8 +28,9 @@ function(eyeslam_program name source)
 endfunction()
 
 # Most of a test's building are the headers of others and the optimiser, and most of its time is spent in the libraries.
-# -pthread, or the headers would not be the same for all.
-set(EYESLAM_TEST_OPTIONS -pthread $<$<CONFIG:Release>:-O1>)
+# -pthread, or the headers would not be the same for all. Fuzzers watch the way through the libraries alone.
+set(EYESLAM_TEST_OPTIONS -pthread $<$<CONFIG:Release>:-O1>
+  $<$<BOOL:${EYESLAM_FUZZERS}>:-fno-sanitize=fuzzer-no-link>)
 
 # eyeslam_test(folder/name_test LIBRARIES targets [SLOW]): one executable and one ctest entry a test file. SLOW: not
 # under sanitizers, such as whole sequences; and optimised as the libraries are, for it spends its time.

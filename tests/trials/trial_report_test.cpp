@@ -194,7 +194,7 @@ TEST_F(TrialReports, StayBelowTenMegabytesForFortyTrials)
 {
   support::SyntheticTrials whole(support::kSanitized ? 2.0 : 20.0);
   std::vector<TrialRecord> records;
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+  for (std::uint64_t seed = 0; seed < (support::kSanitized ? 3U : 20U); ++seed) {
     records.push_back(whole.traced("none", seed));
     records.push_back(whole.traced("hard", seed));
   }
