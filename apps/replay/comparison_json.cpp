@@ -65,6 +65,7 @@ ordered_json videoJson(const replay::VideoReplay& video)
   if (const std::optional<replay::OffsetEstimate>& offset = video.offset()) {
     object["offset_s"] = offset->offset_s;
     object["offset_sigma_s"] = offset->sigma_s;
+    object["advised_offset_s"] = *video.advisedOffset();
     object["offset_frames"] = offset->frames();
     object["offset_correlation"] = offset->correlation;
     object["offset_correlation_elsewhere"] = offset->second;

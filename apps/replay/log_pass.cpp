@@ -15,7 +15,10 @@
 namespace eyeslam::apps {
 namespace {
 
-// What is read must not be replaced by what is written.
+std::int64_t megabytes(std::int64_t bytes) { return (bytes + 999'999) / 1'000'000; }
+
+}  // namespace
+
 void requireOthers(const ReplayArguments& arguments)
 {
   const std::pair<const char*, std::string> outputs[] = {{"--out", arguments.out}, {"--json", arguments.json}};
@@ -29,10 +32,6 @@ void requireOthers(const ReplayArguments& arguments)
     }
   }
 }
-
-std::int64_t megabytes(std::int64_t bytes) { return (bytes + 999'999) / 1'000'000; }
-
-}  // namespace
 
 LogPass::LogPass(const ReplayArguments& arguments, const std::string& doing)
     : path_(arguments.log),

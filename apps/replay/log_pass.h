@@ -10,6 +10,9 @@
 
 namespace eyeslam::apps {
 
+/// What is read must not be replaced by what is written. @throws UsageError  an output is the log or its video
+void requireOthers(const ReplayArguments& arguments);
+
 /// One pass over a log from its beginning, with progress; Ctrl-C ends it between two events.
 class LogPass {
  public:

@@ -20,7 +20,8 @@
 namespace eyeslam::apps {
 namespace {
 
-constexpr int kQuality = 18;  // crf of H.264: fine vessels are kept
+constexpr int kQuality = 18;                // crf of H.264: fine vessels are kept
+constexpr std::int64_t kMostLost = 10'000;  // poses between two; a number farther off is a damaged one
 
 // A frame is drawn once its pose and its tip are known.
 class OverlayRun {
@@ -38,7 +39,7 @@ class OverlayRun {
   void run()
   {
     while (const auto event = pass_.nextOfToday()) {
-      const bool pose = event->event.channel == "RETINA_POSE" && isOfThisRun(*event);
+      const bool pose = event->event.channel == "RETINA_POSE" && isOfThisRun(*event) && mayFollow(*event);
       if (pose) drawWaiting();
       scene_.take(*event);
       if (pose) waiting_ = Waiting{replay::headerOf(event->event).seq, event->since_us, selection_.takes(*event)};
@@ -63,6 +64,12 @@ class OverlayRun {
     return session == session_;
   }
 
+  bool mayFollow(const replay::SortedEvent& event) const
+  {
+    const std::int64_t pose = replay::headerOf(event.event).seq, last = waiting_ ? waiting_->pose : next_ - 1;
+    return last < 0 || pose - last <= kMostLost;
+  }
+
   bool isWaitedFor(const replay::SortedEvent& event)
   {
     return waiting_ && isOfThisRun(event) && replay::headerOf(event.event).seq == waiting_->pose;
@@ -73,7 +80,7 @@ class OverlayRun {
     if (!waiting_) return;
     const Waiting due = *waiting_;
     waiting_.reset();
-    for (; next_ < due.pose; ++next_) draw({next_, due.since_us, due.taken && written_ > 0}, false);
+    for (; next_ < due.pose && !video_.ended(); ++next_) draw({next_, due.since_us, due.taken && written_ > 0}, false);
     draw(due, true);
     next_ = due.pose + 1;
   }

@@ -24,27 +24,25 @@ void sleepUntil(double monotonic)
 }
 
 // Keeps a log's times on the monotonic clock: lateness of one event delays no other. Where one log was joined to a
-// later one, time begins anew.
+// later one, or its clock was set back, time begins anew.
 class LogClock {
  public:
   explicit LogClock(double speed) : speed_(speed) {}
 
-  double due(std::int64_t since_us)
+  double due(const replay::SortedEvent& event)
   {
-    if (!first_us_ || since_us < newest_us_ - kStep_us) {
-      first_us_ = newest_us_ = since_us;
+    if (!first_us_ || event.part != part_) {
+      first_us_ = event.since_us;
+      part_ = event.part;
       start_ = monotonicSeconds();
     }
-    newest_us_ = std::max(newest_us_, since_us);
-    return start_ + 1e-6 * static_cast<double>(since_us - *first_us_) / speed_;
+    return start_ + 1e-6 * static_cast<double>(event.since_us - *first_us_) / speed_;
   }
 
  private:
-  static constexpr std::int64_t kStep_us = 10'000'000;  // farther back than any event that is late
-
   double speed_;
   std::optional<std::int64_t> first_us_;
-  std::int64_t newest_us_ = 0;
+  std::int64_t part_ = 0;
   double start_ = 0.0;
 };
 
@@ -75,7 +73,7 @@ class Playback {
   bool waitFor(const replay::SortedEvent& event)
   {
     constexpr double kSlice = 0.1;  // s
-    const double due = clock_.due(event.since_us);
+    const double due = clock_.due(event);
     for (double now = monotonicSeconds(); now < due; now = monotonicSeconds()) {
       if (pass_.interruption().requested()) {
         pass_.interrupt();
@@ -90,7 +88,7 @@ class Playback {
   void send(const replay::SortedEvent& event)
   {
     const files::LogEvent& e = event.event;
-    const double late = monotonicSeconds() - clock_.due(event.since_us);
+    const double late = monotonicSeconds() - clock_.due(event);
     if (late > latest_) latest_at_us_ = event.since_us;
     latest_ = std::max(latest_, late);
     channel_.assign(e.channel);

@@ -68,12 +68,24 @@ Changes without(Changes changes, const Own& own, const Other& other)
   return changes;
 }
 
+void writeJson(const ReplayArguments& arguments, const std::string& text)
+{
+  if (arguments.json.empty()) return;
+  files::PartialFile file(arguments.json);
+  files::writeWholeFile(file.partialPath(), text);
+  file.publish();
+}
+
+// A table of many logs must have the row of one that could not be read, too; what was found is told already.
+void tellFailure(const ReplayArguments& arguments, const std::string& what)
+{
+  if (!std::filesystem::exists(arguments.json)) writeJson(arguments, failureJson(what));
+}
+
 class RecomputeRun {
  public:
   explicit RecomputeRun(const ReplayArguments& arguments) : arguments_(arguments), pass_(arguments, "computing again")
   {
-    selectionOf(arguments);                                                // refuses what is no interval
-    if (!arguments.json.empty()) std::filesystem::remove(arguments.json);  // of another run, it would be taken for this
     const Changes changes = changesOf(arguments);
     const std::string video = videoOf(arguments);
     const bool both = arguments.only.empty() && !video.empty();
@@ -94,7 +106,7 @@ class RecomputeRun {
   }
 
   void run()
-  try {
+  {
     while (const auto event = pass_.next()) {
       if (restrictTo(*event)) break;
       if (tracker_) tracker_->take(*event);
@@ -110,9 +122,6 @@ class RecomputeRun {
     if (!comparison_.isIdentical()) {
       throw std::runtime_error(fmt::format("{}: {}", arguments_.log, differenceText(comparison_, pass_.log().start())));
     }
-  } catch (const replay::ReplayError& error) {
-    writeJson(failureJson(error.what()));
-    throw files::FileError(fmt::format("{}: {}", arguments_.log, error.what()));
   }
 
  private:
@@ -155,17 +164,9 @@ class RecomputeRun {
       throw std::runtime_error(fmt::format("{}: no message in this part; nothing was compared", arguments_.log));
   }
 
-  void writeJson(const std::string& text) const
-  {
-    if (arguments_.json.empty()) return;
-    files::PartialFile file(arguments_.json);
-    files::writeWholeFile(file.partialPath(), text);
-    file.publish();
-  }
-
   void tell() const
   {
-    writeJson(comparisonJson(comparison_, pass_.log(), tracker_.get(), pass_.interrupted()));
+    writeJson(arguments_, comparisonJson(comparison_, pass_.log(), tracker_.get(), pass_.interrupted()));
     if (arguments_.quiet) return;
     for (const RecomputedPart* part : parts()) {
       fmt::print("{}\n", part->lacking().empty() ? part->about() : "not computed: " + part->lacking());
@@ -193,6 +194,22 @@ class RecomputeRun {
 
 }  // namespace
 
-void recomputeLog(const ReplayArguments& arguments) { RecomputeRun(arguments).run(); }
+void recomputeLog(const ReplayArguments& arguments)
+{
+  selectionOf(arguments);                                                // refuses what is no interval
+  requireOthers(arguments);                                              // before anything is removed
+  if (!arguments.json.empty()) std::filesystem::remove(arguments.json);  // of another run, it would be taken for this
+  try {
+    RecomputeRun(arguments).run();
+  } catch (const UsageError&) {
+    throw;
+  } catch (const replay::ReplayError& error) {
+    tellFailure(arguments, error.what());
+    throw files::FileError(fmt::format("{}: {}", arguments.log, error.what()));
+  } catch (const std::exception& error) {
+    tellFailure(arguments, error.what());
+    throw;
+  }
+}
 
 }  // namespace eyeslam::apps

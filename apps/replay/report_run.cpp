@@ -5,6 +5,7 @@
 
 #include "eyeslam/files/file_error.h"
 #include "eyeslam/files/output_folder.h"
+#include "eyeslam/trials/report_warnings.h"
 #include "eyeslam/trials/results_table.h"
 #include "eyeslam/trials/trial_judge.h"
 #include "eyeslam/trials/trial_report.h"
@@ -43,6 +44,7 @@ void reportLog(const ReplayArguments& arguments)
   folder.write(kReport, trials::trialReport(record));
   folder.publish();
   if (!arguments.quiet) fmt::print("{0}/{1}\n{0}/{2}\n{0}/{3}\n", arguments.out, kReport, kScores, kTable);
+  if (!record.whole) throw files::FileError(fmt::format("{}: {}", arguments.log, trials::kCutOff));
 }
 
 }  // namespace eyeslam::apps

@@ -13,6 +13,7 @@ namespace eyeslam::files {
 namespace {
 
 constexpr std::size_t kChunk = std::size_t{1} << 16;
+constexpr std::int64_t kSearches = 4;            // of the whole file, for events within others
 constexpr std::int64_t kOverlap_us = 1'000'000;  // by which two recordings that were joined may overlap
 
 std::uint64_t numberAt(const std::uint8_t* at, int bytes)
@@ -45,16 +46,17 @@ bool LogReader::fill(std::size_t wanted)
     first_ = 0;
   }
   if (buffer_.size() < wanted) buffer_.resize(2 * wanted);  // twice: what is moved above was paid for by reading on
-  stream_.read(reinterpret_cast<char*>(buffer_.data() + last_), static_cast<std::streamsize>(buffer_.size() - last_));
+  // No further than the file was when it was opened: a logger may be writing, and what is not whole is no damage.
+  const std::int64_t left = size_ - offset_ - static_cast<std::int64_t>(last_ - first_);
+  const auto room = static_cast<std::int64_t>(buffer_.size() - last_);
+  stream_.read(reinterpret_cast<char*>(buffer_.data() + last_), std::clamp<std::int64_t>(left, 0, room));
   last_ += static_cast<std::size_t>(stream_.gcount());
   return last_ - first_ >= wanted;
 }
 
-// A header that an event can have, among the bytes that are there.
-std::optional<LogReader::Header> LogReader::headerAt(std::size_t at) const
+// A header that an event can have.
+std::optional<LogReader::Header> LogReader::headerOf(const std::uint8_t* bytes)
 {
-  if (last_ - first_ < at + kLogHeaderBytes) return std::nullopt;
-  const std::uint8_t* bytes = buffer_.data() + first_ + at;
   const std::uint64_t number = numberAt(bytes + 4, 8), utime = numberAt(bytes + 12, 8);
   Header header;
   header.channel_bytes = static_cast<std::size_t>(numberAt(bytes + 20, 4));
@@ -65,6 +67,13 @@ std::optional<LogReader::Header> LogReader::headerAt(std::size_t at) const
   header.event.number = static_cast<std::int64_t>(number);
   header.event.utime = static_cast<std::int64_t>(utime);
   return header;
+}
+
+// The same among the bytes that are there.
+std::optional<LogReader::Header> LogReader::headerAt(std::size_t at) const
+{
+  if (last_ - first_ < at + kLogHeaderBytes) return std::nullopt;
+  return headerOf(buffer_.data() + first_ + at);
 }
 
 bool LogReader::isCutOff(const Header& header) const
@@ -87,15 +96,41 @@ std::optional<LogReader::Header> LogReader::whole()
   const std::optional<Header> header = headerAt(0);
   if (!header || isCutOff(*header) || !fill(header->bytes())) return std::nullopt;
   const LogEvent& event = header->event;
-  if (damaged_ && event.utime < *std::min_element(utimes_.begin(), utimes_.end()) - kOverlap_us) return std::nullopt;
+  const bool earlier = event.utime < *std::min_element(utimes_.begin(), utimes_.end()) - kOverlap_us;
+  if (damaged_ && earlier && !isOfAnotherLog(*header)) return std::nullopt;
   if (isFollowed(header->bytes())) return header;
   // The last one before damage, unless its own length is what is damaged: then the next event lies within it.
   if (damaged_ || event.number - 1 != last_number_ || holdsTheNext(*header)) return std::nullopt;
   return header;
 }
 
-bool LogReader::holdsTheNext(const Header& header) const
+// Whether events follow each other from here to the end of the file and all are earlier than what was read: a log that
+// was joined. One within a payload ends, and the times go on.
+bool LogReader::isOfAnotherLog(const Header& first)
 {
+  if (offset_ < within_until_) return false;
+  const std::int64_t newest = *std::min_element(utimes_.begin(), utimes_.end()) - kOverlap_us;
+  std::int64_t at = offset_ + static_cast<std::int64_t>(first.bytes());
+  bool another = true;
+  while (another && at + static_cast<std::int64_t>(kLogHeaderBytes) <= size_) {
+    std::array<std::uint8_t, kLogHeaderBytes> bytes{};
+    stream_.clear();
+    stream_.seekg(at);
+    stream_.read(reinterpret_cast<char*>(bytes.data()), bytes.size());
+    const std::optional<Header> header = stream_ ? headerOf(bytes.data()) : std::nullopt;
+    another = header && header->event.utime < newest;
+    if (another) at += static_cast<std::int64_t>(header->bytes());
+  }
+  stream_.clear();
+  stream_.seekg(offset_ + static_cast<std::int64_t>(last_ - first_));
+  if (!another) within_until_ = at;
+  return another;
+}
+
+bool LogReader::holdsTheNext(const Header& header)
+{
+  searched_ += static_cast<std::int64_t>(header.bytes());
+  if (searched_ > kSearches * size_) return true;  // as no logger writes it: nothing more is believed on this ground
   for (std::size_t at = kLogHeaderBytes; at < header.bytes(); ++at) {
     const std::optional<Header> inner = headerAt(at);
     if (!inner) continue;

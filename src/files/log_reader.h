@@ -26,7 +26,8 @@ struct LogDamage {
 /// Reads an LCM log of any length and in any state, in bounded memory. LCM's own reader crashes on absurd lengths and
 /// stops silently at damage (measured: stack, 0.5); this one searches for the next whole event and counts what it left
 /// out. An event is believed when its header is possible and the next one follows it, or the file ends there; after
-/// damage, only when its time has gone on as well, for a payload may hold a whole log.
+/// damage, only when its time has gone on as well, for a payload may hold a whole log, or when all that follows is
+/// earlier, as of a log that was joined. What is written to the file after it was opened is not read.
 ///
 ///   LogReader log("trial.lcm");
 ///   while (const std::optional<LogEvent> event = log.next()) use(*event);   // valid until the next call
@@ -55,9 +56,11 @@ class LogReader {
   };
 
   bool fill(std::size_t wanted);
+  static std::optional<Header> headerOf(const std::uint8_t* bytes);
   std::optional<Header> headerAt(std::size_t at) const;
   bool isFollowed(std::size_t end);
-  bool holdsTheNext(const Header& header) const;
+  bool isOfAnotherLog(const Header& first);
+  bool holdsTheNext(const Header& header);
   bool isCutOff(const Header& header) const;
   std::optional<Header> whole();
   void skip();
@@ -69,6 +72,8 @@ class LogReader {
   std::vector<std::uint8_t> buffer_;
   std::size_t first_ = 0, last_ = 0;  // unread bytes
   bool damaged_ = false;              // bytes are being skipped
+  std::int64_t within_until_ = 0;     // in the file: so far earlier events are of a log within a payload
+  std::int64_t searched_ = 0;         // bytes, for events within others
   std::int64_t last_number_ = -1;
   std::array<std::int64_t, 4> utimes_{};  // of the last events, the newest first: one alone may be damaged
   std::int64_t events_ = 0;

@@ -40,11 +40,13 @@ void ChannelSurvey::add(const SortedEvent& event, const JudgedEvent& judged)
 // A late event ends no gap, and a log that steps back begins none.
 void ChannelSurvey::timeOf(const SortedEvent& event)
 {
-  ++timed_;
-  if (event.late) return;
-  const std::int64_t gap = timed_ == 1 ? 0 : event.since_us - last_since_;
+  const bool begins = timed_++ == 0 || event.part != part_;
+  if (begins) ++parts_;
+  part_ = event.part;
+  if (event.late && !begins) return;
+  const std::int64_t gap = begins ? 0 : event.since_us - last_since_;
   if (gap > findings_.gap.us) findings_.gap = {gap, last_since_};
-  if (timed_ == 1) first_since_ = event.since_us;
+  duration_us_ += gap;
   last_since_ = event.since_us;
 }
 
@@ -101,8 +103,8 @@ ChannelFindings ChannelSurvey::findings() const
   std::int64_t left_out = lost_in_forgotten_;
   for (const Session& session : sessions_) left_out = sum(left_out, session.order.lost());
   findings.lost = left_out - findings.overtaken;
-  const std::int64_t duration_us = last_since_ - first_since_;
-  if (duration_us > 0) findings.rate = static_cast<double>(timed_ - 1) / (1e-6 * static_cast<double>(duration_us));
+  if (duration_us_ > 0)
+    findings.rate = static_cast<double>(timed_ - parts_) / (1e-6 * static_cast<double>(duration_us_));
   return findings;
 }
 

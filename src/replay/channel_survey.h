@@ -72,7 +72,8 @@ class ChannelSurvey {
   ChannelFindings findings_;
   std::array<Session, kSessions> sessions_;
   std::int64_t lost_in_forgotten_ = 0;
-  std::int64_t first_since_ = 0, last_since_ = 0, timed_ = 0;
+  std::int64_t last_since_ = 0, duration_us_ = 0;  // of all parts of the log together
+  std::int64_t timed_ = 0, part_ = 0, parts_ = 0;
 };
 
 }  // namespace eyeslam::replay

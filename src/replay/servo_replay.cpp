@@ -40,7 +40,8 @@ void ServoReplay::take(const SortedEvent& sorted)
                         event.channel == "SERVO_STATUS" || event.channel == "REGISTRATION";
   if (!concerns) return;
   if (judgeToday(event).standing != Standing::ours) return;
-  if (stopped_ && event.utime > *stopped_) end();
+  if (timeline_ && ((stopped_ && event.utime > *stopped_) || sorted.part != part_)) end();
+  part_ = sorted.part;
   if (timeline_) timeline_->take(event);
   mark_t mark{};
   if (isMark(event.channel) && messaging::decode(event.data, event.size, mark)) take(mark, event.utime);
@@ -50,7 +51,9 @@ void ServoReplay::take(const mark_t& mark, std::int64_t utime)
 {
   const bool of_it = timeline_ && mark.sender == start_.sender && mark.session == start_.session;
   if (of_it && mark.kind == mark_t::STOP) stopped_ = utime;
-  if (mark.kind != mark_t::START || timeline_) return;
+  if (mark.kind != mark_t::START) return;
+  if (timeline_ && (of_it || mark.sender != start_.sender)) return;
+  if (timeline_) end();  // it was started anew, without having been stopped
   if (mark.sender == kServo) {
     beginLive(mark, utime);
   } else if (mark.sender == "eyeslam-trial") {

@@ -48,6 +48,7 @@ class ServoReplay final : public RecomputedPart {
   std::unique_ptr<ServoTimeline> timeline_;
   mark_t start_{};  // of what is computed
   std::string about_;
+  std::int64_t part_ = 0;                // of the log, where several were joined
   std::optional<std::int64_t> stopped_;  // us since 1970, when the MARK said so
   bool bare_hand_ = false, live_ = false;
 };

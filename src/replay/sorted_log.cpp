@@ -30,7 +30,7 @@ SortedLog::SortedLog(const std::string& path, SortWindow window) : reader_(path)
 
 bool SortedLog::isAfter(const Holder& a, const Holder& b)
 {
-  return std::tie(a->part, a->sorted.utime, a->order) > std::tie(b->part, b->sorted.utime, b->order);
+  return std::tie(a->sorted.part, a->sorted.utime, a->order) > std::tie(b->sorted.part, b->sorted.utime, b->order);
 }
 
 std::optional<SortedEvent> SortedLog::next()
@@ -68,7 +68,7 @@ bool SortedLog::read()
     place(holderOf(*event));
   } else {
     ended_ = true;
-    if (suspect_) judgeSuspect(settled_[0]);
+    while (!doubted_.empty()) judgeFirstDoubted();
   }
   return true;
 }
@@ -86,34 +86,52 @@ SortedLog::Holder SortedLog::holderOf(const files::LogEvent& event)
   return held;
 }
 
+// Of the last two times the earlier one counts: one alone that is ahead puts no other in doubt.
+bool SortedLog::isDoubtful(std::int64_t utime) const
+{
+  return distance(utime, settled_[0]) > kJump_us || utime < std::min(settled_[0], settled_[1]) - window_.span_us;
+}
+
 void SortedLog::place(Holder held)
 {
   const std::int64_t utime = held->sorted.event.utime;
-  if (suspect_) judgeSuspect(utime);
-  if (distance(utime, settled_[0]) > kJump_us) {
-    suspect_ = std::move(held);
+  if (isDoubtful(utime)) {
+    doubted_.push_back(std::move(held));
+    if (doubted_.size() > kMostDoubted) judgeFirstDoubted();
     return;
   }
+  for (Holder& doubted : std::exchange(doubted_, {})) passDoubted(std::move(doubted));
   settle(utime);
   hold(std::move(held), utime);
 }
 
-void SortedLog::judgeSuspect(std::int64_t next_utime)
+// The log has not come back to where it was: the next one tells whether it goes on from here.
+void SortedLog::judgeFirstDoubted()
 {
-  Holder held = std::move(suspect_);
-  const std::int64_t utime = held->sorted.event.utime, before = settled_[0];
+  std::vector<Holder> doubted = std::exchange(doubted_, {});
+  const std::int64_t utime = doubted.front()->sorted.event.utime, before = settled_[0];
+  const std::int64_t next_utime = doubted.size() > 1 ? doubted[1]->sorted.event.utime : before;
   if (distance(next_utime, utime) < distance(next_utime, before)) {
     if (utime < before) {
       ++part_;
       ++findings_.steps_back;
     }
     settled_.fill(utime);
-    hold(std::move(held), utime);
+    hold(std::move(doubted.front()), utime);
   } else {
-    ++findings_.strays;
-    held->sorted.stray = true;
-    hold(std::move(held), before);
+    passDoubted(std::move(doubted.front()));
   }
+  for (std::size_t i = 1; i < doubted.size(); ++i) place(std::move(doubted[i]));
+}
+
+// Where it stood in the file, if its time cannot be true.
+void SortedLog::passDoubted(Holder held)
+{
+  const std::int64_t utime = held->sorted.event.utime, before = settled_[0];
+  held->sorted.stray = distance(utime, before) > kJump_us;
+  findings_.strays += held->sorted.stray ? 1 : 0;
+  const std::int64_t place = held->sorted.stray ? before : utime;
+  hold(std::move(held), place);
 }
 
 void SortedLog::settle(std::int64_t utime)
@@ -125,7 +143,7 @@ void SortedLog::settle(std::int64_t utime)
 void SortedLog::hold(Holder held, std::int64_t utime)
 {
   held->sorted.utime = utime;
-  held->part = part_;
+  held->sorted.part = part_;
   held_bytes_ += held->bytes.size();
   heap_.push_back(std::move(held));
   std::push_heap(heap_.begin(), heap_.end(), isAfter);
@@ -137,7 +155,7 @@ bool SortedLog::mayRelease() const
   if (heap_.empty()) return false;
   if (ended_ || heap_.size() >= window_.events || held_bytes_ >= window_.bytes) return true;
   const Held& top = *heap_.front();
-  return top.part < part_ || std::min(settled_[0], settled_[1]) - top.sorted.utime >= window_.span_us;
+  return top.sorted.part < part_ || std::min(settled_[0], settled_[1]) - top.sorted.utime >= window_.span_us;
 }
 
 void SortedLog::release()
@@ -149,8 +167,8 @@ void SortedLog::release()
   SortedEvent& sorted = current_->sorted;
   if (!start_) start_ = sorted.utime;
   sorted.since_us = sorted.utime - *start_;
-  if (current_->part != delivered_part_) delivered_ = 0;
-  delivered_part_ = current_->part;
+  if (sorted.part != delivered_part_) delivered_ = 0;
+  delivered_part_ = sorted.part;
   sorted.late = sorted.utime < delivered_;
   if (sorted.late) {
     ++findings_.late;

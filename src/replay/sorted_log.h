@@ -25,6 +25,7 @@ struct SortedEvent {
   files::LogEvent event;      ///< as it stands in the file; its bytes live until the next call
   std::int64_t utime = 0;     ///< us since 1970: its place, which is event.utime unless it is stray
   std::int64_t since_us = 0;  ///< utime since the log's first event; negative only where a log steps back
+  std::int64_t part = 0;      ///< rises where time steps back: of another log, which was joined
   bool stray = false;         ///< its time cannot be true, so it stands where it stood in the file
   bool late = false;          ///< farther from its place than the window; it follows later ones
 };
@@ -34,7 +35,7 @@ struct SortFindings {
   std::int64_t strays = 0;
   std::int64_t late = 0;
   std::int64_t latest_us = 0;   ///< the worst of them, behind the event before it
-  std::int64_t steps_back = 0;  ///< places where time steps back by more than kJump_us and stays there: joined logs
+  std::int64_t steps_back = 0;  ///< places where time steps back beyond the window and stays there: joined logs
 };
 
 /// The events of a log by time, each once, nothing left out, in bounded memory. Events of equal times keep their order,
@@ -43,12 +44,14 @@ struct SortFindings {
 ///   SortedLog log("trial.lcm");
 ///   while (const std::optional<SortedEvent> event = log.next()) use(*event);   // valid until the next call
 ///
-/// A time is not believed (stray) when it is more than kJump_us away from its neighbours and the event after it goes on
-/// where those were; where the next one goes on from the new time, that is a pause or, backwards, a log that was
-/// joined to another: all of the first comes before all of the second.
+/// Events that are more than kJump_us away from those before, or behind them by more than the window, are doubted until
+/// the log goes on where it was: then they were late, or, so far away, cannot be true (stray). Where kMostDoubted do
+/// not bring it back, or the file ends, that was a pause or, backwards, a log that was joined to another or a clock
+/// that was set: all of the first part comes before all of the second.
 class SortedLog {
  public:
   static constexpr std::int64_t kJump_us = 3'600'000'000;
+  static constexpr std::size_t kMostDoubted = 32;
 
   /// @throws files::FileError when the file cannot be opened; std::invalid_argument: a window of nothing
   explicit SortedLog(const std::string& path, SortWindow window = {});
@@ -65,7 +68,6 @@ class SortedLog {
  private:
   struct Held {
     SortedEvent sorted;
-    std::int64_t part = 0;   // rises where time steps back
     std::int64_t order = 0;  // in the file
     std::vector<std::uint8_t> bytes;
   };
@@ -76,7 +78,9 @@ class SortedLog {
   bool read();
   Holder holderOf(const files::LogEvent& event);
   void place(Holder held);
-  void judgeSuspect(std::int64_t next_utime);
+  bool isDoubtful(std::int64_t utime) const;
+  void judgeFirstDoubted();
+  void passDoubted(Holder held);
   void settle(std::int64_t utime);
   void hold(Holder held, std::int64_t utime);
   bool mayRelease() const;
@@ -88,8 +92,8 @@ class SortedLog {
   SortFindings findings_;
   std::vector<Holder> heap_;  // the next one on top
   std::vector<Holder> spare_;
-  Holder current_;  // what was delivered last
-  Holder suspect_;  // far from its neighbours, until the next one tells
+  Holder current_;               // what was delivered last
+  std::vector<Holder> doubted_;  // in the order of the file
   std::size_t held_bytes_ = 0;
   std::int64_t order_ = 0;
   std::int64_t part_ = 0;

@@ -88,8 +88,9 @@ void TrackerReplay::take(const SortedEvent& event)
     Held held(event);
     if ((vision || scale) && judgeToday(event.event).standing == Standing::ours) {
       held.header = headerOf(event.event);
-      if (vision && session_ == 0 && held.message.channel == kPoseChannel) begin(held.header.session);
-      held.vision = vision && held.header.session == session_;
+      const bool may_begin = vision && !engine_ && held.header.session != 0;
+      if (may_begin && held.message.channel == kPoseChannel) begin(held.header.session, event.part);
+      held.vision = vision && engine_ && held.header.session == session_ && event.part == part_;
       if (vision && !held.vision && held.message.channel == kPoseChannel) ++findings_.other_runs;
     }
     if (held.vision) expectFrame(held);
@@ -110,9 +111,10 @@ void TrackerReplay::finish()
   }
 }
 
-void TrackerReplay::begin(std::int64_t session)
+void TrackerReplay::begin(std::int64_t session, std::int64_t part)
 {
   session_ = session;
+  part_ = part;
   engine_ = std::make_unique<Engine>(options_, session, [this](const messaging::TappedEvent& event) { hear(event); });
 }
 

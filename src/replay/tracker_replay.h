@@ -96,7 +96,7 @@ class TrackerReplay {
     bool known = true;       // its stamp is the log's
   };
 
-  void begin(std::int64_t session);
+  void begin(std::int64_t session, std::int64_t part);
   void expectFrame(const Held& held);
   void expect(std::int64_t number, const messaging::FrameStamp& stamp, std::int64_t ready);
   void judgeTime(std::int64_t number, std::int64_t utime);
@@ -122,11 +122,11 @@ class TrackerReplay {
   std::deque<Look> looks_;
   std::optional<Held> scale_;  // a registration that the tracker has not read yet
   std::map<std::string, Channel, std::less<>> channels_;
-  std::int64_t session_ = 0, next_number_ = 0;
-  messaging::FrameStamp last_;  // stamp of the newest known frame
-  std::int64_t period_us_;      // of frames, as their stamps have it
-  std::int64_t last_sent_ = 0;  // us since 1970, the newest
-  std::int64_t place_us_ = 0;   // of the event being processed, since the log's first
+  std::int64_t session_ = 0, part_ = 0, next_number_ = 0;  // part_: of the log, where several were joined
+  messaging::FrameStamp last_;                             // stamp of the newest known frame
+  std::int64_t period_us_;                                 // of frames, as their stamps have it
+  std::int64_t last_sent_ = 0;                             // us since 1970, the newest
+  std::int64_t place_us_ = 0;                              // of the event being processed, since the log's first
   TrackerFindings findings_;
 };
 

@@ -34,7 +34,7 @@ tracking::TrackerOptions liveTrackerConfiguration(const std::string& yaml)
   return configuration::applied(tracking::TrackerOptions{}, recorded);
 }
 
-std::string offsetWarning(const OffsetEstimate& offset)
+std::string offsetWarning(const OffsetEstimate& offset, double advised_s)
 {
   if (!offset.isCertain()) {
     return fmt::format("the offset of the video is not certain: {:+.1f} ms (correlation {:.2f}, elsewhere {:.2f})",
@@ -42,7 +42,7 @@ std::string offsetWarning(const OffsetEstimate& offset)
   }
   return fmt::format(
       "the video is {:.1f} frames off: its time {:+.4f} s is that of the log; --offset {:.4f} takes it so",
-      std::abs(offset.frames()), offset.offset_s, offset.offset_s);
+      std::abs(offset.frames()), advised_s, advised_s);
 }
 
 }  // namespace
@@ -107,6 +107,12 @@ std::string VideoReplay::lacking() const
          "the logger must run before the tracker begins";
 }
 
+std::optional<double> VideoReplay::advisedOffset() const
+{
+  if (!offset_) return std::nullopt;
+  return static_cast<double>(shift_) / video_.framesPerSecond() + offset_->offset_s;
+}
+
 std::vector<std::string> VideoReplay::warnings() const
 {
   std::vector<std::string> lines = video_.notices();
@@ -116,7 +122,8 @@ std::vector<std::string> VideoReplay::warnings() const
   };
   say(!video_.failure().empty(), video_.failure());
   say(!offset_, "the offset of the video is not known: too little moves, or was logged");
-  if (offset_ && (!offset_->isCertain() || std::abs(offset_->frames()) > 0.5)) lines.push_back(offsetWarning(*offset_));
+  if (offset_ && (!offset_->isCertain() || std::abs(offset_->frames()) > 0.5))
+    lines.push_back(offsetWarning(*offset_, *advisedOffset()));
   say(video_.timesRepaired() > kTimesAtTheEnd,
       fmt::format("{} pictures of the video have no time of their own, or one that is not later than the one before",
                   video_.timesRepaired()));

@@ -42,6 +42,8 @@ class VideoReplay final : public RecomputedPart {
 
   /// How far the clocks are apart (beyond the offset that was given); after the end. None where nothing tells.
   const std::optional<OffsetEstimate>& offset() const { return offset_; }
+  /// That offset and the one that was given together, s: what to give instead.
+  std::optional<double> advisedOffset() const;
   /// Frames by which the pictures were taken to be later than the poses of their numbers, as the offset has it.
   std::int64_t shift() const { return shift_; }
   /// All zero where there was nothing to track again.

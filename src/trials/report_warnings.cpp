@@ -137,6 +137,7 @@ std::string nameOf(const TrialRecord& record)
 std::vector<std::string> warningsOf(const TrialRecord& record)
 {
   Warnings warnings;
+  if (!record.whole) warnings.emplace_back(kCutOff);
   if (record.passed && !*record.passed) warnings.push_back("failed: " + record.verdict);
   warnOfPulses(record, warnings);
   warnOfEvents(record, warnings);

@@ -9,8 +9,12 @@
 
 namespace eyeslam::trials {
 
-/// What must be known before any figure of a trial is believed, the gravest first: a failed verdict, pulses with an
-/// interlock open, far pulses that nothing explains, burns on a vessel, times in hold or fault, what is missing.
+/// Of a trial that is judged by a log without its end.
+constexpr const char* kCutOff = "the log ends before the trial does (no MARK STOP); what there is was judged";
+
+/// What must be known before any figure of a trial is believed, the gravest first: a log that was cut off, a failed
+/// verdict, pulses with an interlock open, far pulses that nothing explains, burns on a vessel, times in hold or fault,
+/// what is missing.
 std::vector<std::string> warningsOf(const TrialRecord& record);
 
 /// Of all trials of a study, and what only a study shows: seeds in which an aid makes it worse, seeds without their

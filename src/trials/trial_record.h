@@ -75,6 +75,7 @@ struct TrialRecord {
   std::vector<PlannedTarget> targets;
   MapCoverage map;  ///< of the map at the end; empty where nothing mapped
   std::vector<TrialEvent> events;
+  bool whole = true;                       ///< the log has the trial's end: not of one that was cut off
   double fastest_tip = 0.0;                ///< m/s, from the start, calibration included
   double worst_pivot = 0.0;                ///< m, of the shaft from the commanded centre of motion
   std::int64_t frames = 0, tracked = 0;    ///< whose poses came

@@ -78,6 +78,7 @@ TrialRecord TrialJudge::record() const
   record.retina = scene_->picture();
   for (const Eigen::Vector3d& place : scene_->path()) record.path.emplace_back(place.head<2>());
   record.events = events_;
+  record.whole = over_;
   record.pose_ages_s = pose_ages_s_;
   record.frame_to_command_s = frame_to_command_s_;
   record.computation_s = computation_s_;

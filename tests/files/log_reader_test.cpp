@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <ctime>
 #include <fstream>
 #include <limits>
 #include <string>
@@ -125,6 +126,47 @@ TEST_F(LogReading, DoesNotTakeALogWithinAPayloadForItsOwnEvents)
   std::string bytes(written.begin(), written.end());
   put(bytes, bytes.size() / 3, 0);  // the second event's magic
   EXPECT_EQ(read(bytes).numbers, (std::vector<std::int64_t>{0, 2}));
+}
+
+TEST_F(LogReading, FindsAnOlderLogBehindOneThatWasCutOff)
+{
+  const std::string bytes = good(10);
+  std::string older = bytes;
+  for (std::size_t i = 0; i < 10; ++i) older[i * kEvent + 14] = static_cast<char>(older[i * kEvent + 14] - 1);  // hours
+  const Found found = read(bytes.substr(0, bytes.size() - 20) + older);
+  EXPECT_EQ(found.numbers.size(), 19U) << "but the event into which the one that was cut off reaches";
+}
+
+TEST_F(LogReading, TakesWhatIsWrittenMeanwhileForNoDamage)
+{
+  const std::string bytes = good(10);
+  writeWholeFile(path_, bytes.substr(0, 5 * kEvent));
+  LogReader log(path_);
+  std::ofstream(path_, std::ios::binary | std::ios::app) << bytes.substr(5 * kEvent);
+  int events = 0;
+  while (log.next()) ++events;
+  EXPECT_EQ(events, 5);
+  EXPECT_FALSE(log.damage().any());
+}
+
+TEST_F(LogReading, ComesToAnEndWithEventsThatOverlap)
+{
+  std::string bytes;
+  for (int i = 0; i < 20'000; ++i) {  // each says that it holds all that follow
+    std::string header(kLogHeaderBytes + 5, 'S');
+    for (std::size_t k = 0; k < kLogHeaderBytes; k += 4) put(header, k, 0);
+    put(header, 0, kLogMagic);
+    put(header, 8, static_cast<std::uint32_t>(i));
+    put(header, 16, 1000);
+    put(header, 20, 5);
+    put(header, 24, static_cast<std::uint32_t>((20'000 - i) * (kLogHeaderBytes + 5) - kLogHeaderBytes - 5 + 64));
+    bytes += header;
+  }
+  writeWholeFile(path_, bytes + std::string(100, 'x'));
+  LogReader log(path_);
+  const std::clock_t start = std::clock();
+  while (log.next()) continue;
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 10.0);
 }
 
 TEST_F(LogReading, GoesOnAcrossLogsThatWereJoined)

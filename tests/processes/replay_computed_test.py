@@ -162,6 +162,24 @@ class ComputedAgain(ReplayCase):
                 self.assertEqual(len(pairs), 1, pairs)
                 self.assertIn("wall_s", pairs[0][0])
 
+    def test_a_report_of_a_log_that_was_cut_off_says_so(self):
+        length = 1e-6 * (lambda events: events[-1][0] - events[0][0])(list(lcm_log.read(self.log())))
+        self.replay("cut", self.log(), "--to", str(length - 0.4), "--out", self.path("short.lcm"))
+        self.assert_refused(self.call("eyeslam-replay", "report", self.path("short.lcm"), "--out", self.path("report"), "--quiet"),
+                            1, "short.lcm", "no MARK STOP")
+        with open(self.path("report/report.html")) as file:
+            self.assertIn("no MARK STOP", file.read())
+
+    def test_a_log_that_cannot_be_computed_has_its_row_in_a_table(self):
+        with open(self.path("empty.lcm"), "w"):
+            pass
+        self.replay(self.log(), "--json", self.path("gone.json"))
+        for log, result in (("empty.lcm", "empty.json"), ("gone.lcm", "gone.json")):
+            self.replay(self.path(log), "--json", self.path(result), status=1)
+            table = subprocess.run([sys.executable, TABLE, self.path(result)], capture_output=True, text=True)
+            self.assertEqual(table.returncode, 1, table.stdout)
+            self.assertIn(log, table.stdout)
+
     def test_what_a_log_lacks_is_refused_in_one_line(self):
         self.assert_refused(self.call("eyeslam-replay", self.simulated()), 1, "no MARK START of eyeslam-trial or eyeslam-servo")
         self.assert_refused(self.call("eyeslam-replay", "report", self.simulated(), "--out", self.path("report")), 1,

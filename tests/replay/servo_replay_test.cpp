@@ -16,6 +16,7 @@
 #include "eyeslam/messaging/record_messages.h"
 #include "support/broken_messages.h"
 #include "support/short_trial.h"
+#include "support/written_log.h"
 
 namespace eyeslam::replay {
 namespace {
@@ -73,6 +74,26 @@ TEST(ServoReplay, SendsTheSameBytesAsWithALaser)
   EXPECT_TRUE(again.comparison.isIdentical());
   EXPECT_GT(again.on("LASER_COMMAND").compared, 100);
   EXPECT_GT(again.on("BURN_PLAN").compared, 0) << "no plan was in force";
+}
+
+TEST(ServoReplay, ComputesEachOfTwoTrialsThatWereJoined)
+{
+  support::WrittenLog joined;
+  for (int i = 0; i < 2; ++i) {
+    for (const KeptEvent& event : traced().events) {
+      joined.add(event.channel, support::Bytes(event.bytes.begin(), event.bytes.end()), event.utime);
+    }
+  }
+  Comparison comparison;
+  ServoReplay servo({}, comparison);
+  SortedLog log(joined.finish());
+  while (const auto event = log.next()) servo.take(*event);
+  servo.finish();
+  EXPECT_TRUE(comparison.isIdentical());
+  std::int64_t commands = 0;
+  for (const ChannelComparison& channel : comparison.channels())
+    commands += channel.channel == "MICRON_COMMAND" ? channel.identical : 0;
+  EXPECT_EQ(commands, 2 * countOn(traced(), "MICRON_COMMAND"));
 }
 
 TEST(ServoReplay, FindsTheFieldAndTimeOfAChangedByte)

@@ -22,6 +22,7 @@ constexpr std::int64_t kSecond = 1'000'000, kDay = 86'400 * kSecond;
 struct Read {
   std::vector<std::int64_t> numbers;  // of the events, by their place in the file
   std::vector<std::int64_t> utimes;   // of their places in time
+  std::vector<std::int64_t> parts;
   std::vector<bool> stray, late;
   SortFindings findings;
 };
@@ -35,6 +36,7 @@ Read readSorted(const std::vector<std::int64_t>& utimes, SortWindow window = {})
   while (const auto event = log.next()) {
     read.numbers.push_back(event->event.number);
     read.utimes.push_back(event->utime);
+    read.parts.push_back(event->part);
     read.stray.push_back(event->stray);
     read.late.push_back(event->late);
   }
@@ -144,6 +146,20 @@ TEST(SortedLog, LetsNoImpossibleTimeDisturbTheOthers)
   }
 }
 
+TEST(SortedLog, LetsSeveralImpossibleTimesInARowNotBearEachOtherOut)
+{
+  for (const std::int64_t wrong : {std::int64_t{0}, std::int64_t{1} << 62U, kLogStart + 365 * kDay}) {
+    for (const std::size_t count : {2U, 5U, 32U}) {
+      std::vector<std::int64_t> utimes = everyMillisecond(1000);
+      std::fill_n(utimes.begin() + 500, count, wrong);
+      const Read read = readSorted(utimes);
+      EXPECT_TRUE(std::is_sorted(read.numbers.begin(), read.numbers.end())) << wrong << ", " << count;
+      EXPECT_EQ(read.findings.strays, static_cast<std::int64_t>(count)) << wrong;
+      EXPECT_EQ(read.findings.late + read.findings.steps_back, 0) << wrong << ", " << count;
+    }
+  }
+}
+
 // Ten minutes ahead is possible, so it is believed; but it must not end the wait for events that are overtaken.
 TEST(SortedLog, LetsNoTimeThatIsAheadEmptyItsWindow)
 {
@@ -175,6 +191,22 @@ TEST(SortedLog, ReadsJoinedLogsOneAfterTheOther)
   EXPECT_EQ(read.utimes, utimes);
   EXPECT_EQ(read.findings.steps_back, 1);
   EXPECT_EQ(read.findings.strays + read.findings.late, 0);
+}
+
+// Trials in lock step begin at the same time, all of them; and a clock may be set back.
+TEST(SortedLog, ReadsALogAfterTheOneThatItOverlaps)
+{
+  for (const std::int64_t back : {5 * kSecond, 20 * kSecond}) {
+    std::vector<std::int64_t> utimes = everyMillisecond(20'000);
+    const std::vector<std::int64_t> again = everyMillisecond(20'000, kLogStart + 20 * kSecond - back);
+    utimes.insert(utimes.end(), again.begin(), again.end());
+    const Read read = readSorted(utimes);
+    EXPECT_EQ(read.utimes, utimes);
+    EXPECT_EQ(read.findings.steps_back, 1);
+    EXPECT_EQ(read.findings.strays + read.findings.late, 0);
+    EXPECT_EQ(std::count(read.parts.begin(), read.parts.end(), 0), 20'000);
+    EXPECT_EQ(read.parts.back(), 1);
+  }
 }
 
 TEST(SortedLog, PassesOtherPeoplesChannelsUntouched)

@@ -213,6 +213,27 @@ TEST(TrackerReplay, LiveARegistrationCountsFromThePoseThatSaysSo)
   }
 }
 
+TEST(TrackerReplay, LeavesMessagesOfNoSessionAlone)
+{
+  support::WrittenLog odd;
+  SortedLog log(filmed().path);
+  odd.add(support::headed<tool_tip_t>(support::kLogStart, 0, 0), support::kLogStart);
+  odd.add(support::headed<retina_pose_t>(support::kLogStart, 0, 0), support::kLogStart);
+  while (const auto event = log.next()) {
+    odd.add(std::string(event->event.channel), support::Bytes(event->event.data, event->event.data + event->event.size),
+            event->event.utime);
+  }
+  odd.finish();
+  const std::vector<cv::Mat> some(filmed().pictures.begin(), filmed().pictures.begin() + 30);
+  for (const TrackerOrder order : {TrackerOrder::lock_step, TrackerOrder::live}) {
+    TrackerReplayOptions options = usual();
+    options.order = order;
+    const Replayed again = replayed(odd.path("log.lcm"), filmed().film("odd.mkv", some), options);
+    EXPECT_EQ(again.findings.frames, 30);
+    EXPECT_EQ(again.findings.other_runs, 1);
+  }
+}
+
 TEST(TrackerReplay, ComesToAnEndWithBrokenMessages)
 {
   std::mt19937 random(8);
