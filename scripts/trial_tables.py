@@ -11,6 +11,7 @@ import statistics
 import subprocess
 import sys
 
+import numpy as np
 from scipy.stats import beta
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
@@ -124,8 +125,23 @@ def spread(trials, name):
     return statistics.stdev(trial[name] for trial in trials) if len(trials) > 1 else 0.0
 
 
+def of_seeds(trials, value):
+    return {int(trial["seed"]): value(trial) for trial in trials}
+
+
+def change(aided, bare, value):
+    """Of the mean by the aid, per cent, with its 95 % interval: a percentile bootstrap over the seeds that both have."""
+    with_aid, without = of_seeds(aided, value), of_seeds(bare, value)
+    seeds = sorted(with_aid.keys() & without.keys())
+    pairs = np.array([(with_aid[seed], without[seed]) for seed in seeds])
+    drawn = pairs[np.random.default_rng(1).integers(0, len(seeds), (4000, len(seeds)))].mean(axis=1)
+    low, high = np.percentile(100.0 * (drawn[:, 0] / drawn[:, 1] - 1.0), (2.5, 97.5))
+    return 100.0 * (pairs[:, 0].mean() / pairs[:, 1].mean() - 1.0), low, high
+
+
 def reduction(trials, aid, motion):
-    return 100.0 * (1.0 - mean(chosen(trials, aid, motion), "rms_um") / mean(chosen(trials, "none", motion), "rms_um"))
+    value, low, high = change(chosen(trials, aid, motion), chosen(trials, "none", motion), lambda trial: trial["rms_um"])
+    return f"{-value:.0f} % ({-high:.1f} to {-low:.1f})"
 
 
 def rms(trials):
@@ -147,14 +163,14 @@ def worse(trials):
 def tracing_rows(slow, fast):
     hard, soft = chosen(slow, "hard"), chosen(slow, "soft")
     yield "unaided, in situ", errors(chosen(slow, "none")), "162", ""
-    yield ("hard, in situ 30/20, reduction", f"{errors(hard)}, {reduction(slow, 'hard', 'in_situ'):.0f} %",
+    yield ("hard, in situ 30/20, reduction", f"{errors(hard)}, {reduction(slow, 'hard', 'in_situ')}",
            "13.0 / 7.7 / 23, 92 %", "16 / 10 / 28, 88 %")
-    yield ("soft, lambda 0.1, in situ 30/20, reduction", f"{errors(soft)}, {reduction(slow, 'soft', 'in_situ'):.0f} %",
+    yield ("soft, lambda 0.1, in situ 30/20, reduction", f"{errors(soft)}, {reduction(slow, 'soft', 'in_situ')}",
            "27.6, 83 %", "30, 80 %")
     fast_eye = chosen(slow, "hard", "jerky") + chosen(slow, "hard", "saccade")
     if fast_eye:
         yield ("hard, jerky / saccade: reduction (RMS)",
-               " / ".join(f"{reduction(slow, 'hard', motion):.0f} % ({rms(chosen(slow, 'hard', motion))})"
+               " / ".join(f"{reduction(slow, 'hard', motion)}, {rms(chosen(slow, 'hard', motion))}"
                           for motion in ("jerky", "saccade")), "87 % / 73 %", "83 % / 65 %")
         yield ("outside 150 ms after fast motion: RMS / p99",
                f"{mean(fast_eye, 'calm_rms_um'):.1f} / {mean(fast_eye, 'calm_p99_um'):.0f}", "12.9 / 32", "15 / 40")
@@ -187,14 +203,20 @@ def coverage(trials, calibre):
     return statistics.fmean([share for share in shares if share is not None] or [0.0])
 
 
-def seconds_a_burn(trials):
-    return statistics.fmean(1.0 / trial["burns_per_s"] for trial in trials)
-
-
 def far(trials):
     """With the share that may be true all the same, one-sided at 95 % (Clopper and Pearson)."""
     count, of = total(trials, "far_pulses"), total(trials, "fired")
     return f"{count} of {of} (at most {100.0 * beta.ppf(0.95, count + 1, max(of - count, 1)):.1f} %)"
+
+
+def pulses_of(name, motion=""):
+    """As the checker measured them, of all logs of a study of the automated laser."""
+    return [pulse for file in sorted((OUT / name).glob("**/checked.json")) if motion in str(file)
+            for log in json.loads(file.read_text())["logs"] for pulse in log["pulses"]]
+
+
+def pooled_p95(name, motion=""):
+    return np.percentile([pulse["placement_um"] for pulse in pulses_of(name, motion)] or [math.nan], 95)
 
 
 def laser_rows(slow, fast):
@@ -203,20 +225,24 @@ def laser_rows(slow, fast):
     still = [trial for trial in still if trial["camera_hz"] < 100]
     quick = [trial for trial in chosen(burnt, "automated") if trial["camera_hz"] > 100]
     manual = chosen(burnt, "manual")
-    yield ("automated, in situ 30/20: mean ± spread / p95", f"{mean(still, 'placement_mean_um'):.1f} ± "
-           f"{spread(still, 'placement_mean_um'):.1f} / {mean(still, 'placement_p95_um'):.0f}", "13.0 / 26", "16 / 32")
+    yield ("automated, in situ 30/20: mean ± spread / p95 of all pulses", f"{mean(still, 'placement_mean_um'):.1f} ± "
+           f"{spread(still, 'placement_mean_um'):.1f} / {pooled_p95('laser', 'in_situ'):.0f}", "13.0 / 26", "16 / 32")
     if quick:
-        yield ("automated, in situ 120/5: mean / p95",
-               f"{mean(quick, 'placement_mean_um'):.1f} / {mean(quick, 'placement_p95_um'):.0f}", "10.0 / 21", "13 / 27")
+        yield ("automated, in situ 120/5: the same", f"{mean(quick, 'placement_mean_um'):.1f} ± "
+               f"{spread(quick, 'placement_mean_um'):.1f} / {pooled_p95('laser_120'):.0f}", "10.0 / 21", "13 / 27")
     yield ("manual (a model fitted to nothing): mean / p95",
            f"{mean(manual, 'placement_mean_um'):.0f} / {mean(manual, 'placement_p95_um'):.0f}", "223 / 438", "")
-    lower = 100.0 * (mean(still, "placement_mean_um") / mean(manual, "placement_mean_um") - 1.0)
-    faster = 100.0 * (seconds_a_burn(still) / seconds_a_burn(manual) - 1.0)
-    yield "error / time a burn against manual", f"{lower:.0f} % / {faster:.0f} %", "-94 % / -73 %", "-88 % / -65 %"
-    yield ("burns a second; of the manual operator",
+    lower, faster = (change(still, manual, value) for value in
+                     (lambda trial: trial["placement_mean_um"], lambda trial: 1.0 / trial["burns_per_s"]))
+    yield ("error / time a burn against manual", " / ".join(f"{value:.0f} % ({low:.1f} to {high:.1f})"
+                                                            for value, low, high in (lower, faster)),
+           "-94 % / -73 %", "-88 % / -65 %")
+    missed = [f"{total(group, 'missed')} of {total(group, 'fired')}" for group in (still, jerky, quick)]
+    yield ("pulses that were stopped before their end (targets missed): in situ / jerky / 120/5", " / ".join(missed), "", "")
+    yield ("pulses a second; of the manual operator",
            f"{mean(still, 'burns_per_s'):.2f}; {mean(manual, 'burns_per_s'):.2f}", "2.75; 0.74", "2.3")
 
-    yield ("length of burns, drawn out by the spot's way: mean ± spread",
+    yield ("length of burns, drawn out by the spot's way: mean ± spread in a trial",
            f"{mean(still, 'burn_length_mean_um'):.0f} ± {mean(still, 'burn_length_spread_um'):.1f}", "", "")
 
     yield "pulses more than 60 um off: in situ / jerky", f"{far(still)} / {far(jerky)}", "0 / 1.4 %", "0.1 % / 2.5 %"
@@ -265,7 +291,9 @@ def trials(studies, seeds=20):
     yield "Whole trials in lock step on messages alone: rendered frames, the real tracker, its map, the servo, the simulated"
     yield f"surgeon, eye, Micron and laser; {seeds} seeds of 20 s (laser: until the plan is done), in vivo conditions, tremor of"
     yield "50 to 100 um RMS per axis. Errors are against the simulation's truth; of a tracing to the true centreline of its vessel,"
-    yield "beyond the ends of its path to that of any vessel. ± is the spread over seeds. The studies:\n"
+    yield "beyond the ends of its path to that of any vessel. ± is the spread over seeds, of burns' lengths that within a trial;"
+    yield "in parentheses the 95 % interval of a percentile bootstrap over seeds. Medians and p95 of tracings are means over seeds."
+    yield "The studies:\n"
     yield "```text"
     for name in studies:
         scenario, settings = STUDIES[name]

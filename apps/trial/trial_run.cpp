@@ -36,19 +36,31 @@ std::string pathIn(const TrialArguments& arguments, const std::string& name)
 // What cannot be written is better known before the trials than after them.
 void checkFolder(const std::string& path) { const files::OutputFolder nothing(path, {}); }
 
-std::string reportOf(const std::vector<trials::TrialRecord>& records)
+std::string interruption(const TrialOutcomes& outcomes, std::size_t planned)
 {
-  return records.size() == 1 ? trials::trialReport(records.front()) : trials::studyReport(records);
+  return fmt::format("interrupted; {} of {} trials were run to their end and are kept", outcomes.records.size(),
+                     planned);
 }
 
-void writeStudy(const TrialArguments& arguments, const std::vector<trials::TrialRecord>& records)
+std::string reportOf(const TrialOutcomes& outcomes, std::size_t planned)
 {
+  std::vector<std::string> missing;
+  if (outcomes.interrupted) missing.push_back(interruption(outcomes, planned));
+  for (const std::string& failure : outcomes.failures) missing.push_back("could not be run: " + failure);
+  const auto& records = outcomes.records;
+  return records.size() == 1 && missing.empty() ? trials::trialReport(records.front())
+                                                : trials::studyReport(records, missing);
+}
+
+void writeStudy(const TrialArguments& arguments, const TrialOutcomes& outcomes, std::size_t planned)
+{
+  const std::vector<trials::TrialRecord>& records = outcomes.records;
   std::vector<trials::TrialScore> scores;
   scores.reserve(records.size());
   for (const trials::TrialRecord& record : records) scores.push_back(record.score);
   trials::writeResultsTable(pathIn(arguments, "results.csv"), scores);
   files::PartialFile report(pathIn(arguments, "report.html"));
-  files::writeWholeFile(report.partialPath(), reportOf(records));
+  files::writeWholeFile(report.partialPath(), reportOf(outcomes, planned));
   report.publish();
 }
 
@@ -63,10 +75,8 @@ void endWith(const TrialOutcomes& outcomes, std::size_t planned)
 {
   if (outcomes.interrupted && outcomes.records.empty())
     throw std::runtime_error("interrupted before the first trial had ended; nothing written");
-  if (outcomes.interrupted)
-    fmt::print(stderr, "eyeslam-trial: interrupted; {} of {} trials were run to their end and are kept\n",
-               outcomes.records.size(), planned);
   for (const std::string& failure : outcomes.failures) fmt::print(stderr, "eyeslam-trial: {}\n", failure);
+  if (outcomes.interrupted) throw std::runtime_error(interruption(outcomes, planned));
   const std::size_t failed = failuresAmong(outcomes.records);
   if (failed == 0 && outcomes.failures.empty()) return;
   throw std::runtime_error(
@@ -96,7 +106,7 @@ void runTrials(const TrialArguments& arguments)
   Interruption interruption;
   const TrialOutcomes outcomes = TrialCrew(list, arguments, interruption).run();
   if (!outcomes.records.empty()) {
-    writeStudy(arguments, outcomes.records);
+    writeStudy(arguments, outcomes, list.trials().size());
     show(arguments, outcomes.records);
   }
   endWith(outcomes, list.trials().size());

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <vector>
 
 namespace eyeslam::trials {
 
-/// A figure, and the interval that holds the true one in 95 of 100 studies.
+/// Of fewer seeds the percentile bootstrap's intervals are too short to be shown: simulated with normal errors they
+/// hold the true mean in 49 of 100 studies of 2 seeds, 83 of 5, 90 of 10, 92 of 20.
+constexpr std::size_t kSeedsForInterval = 8;
+
+/// A figure, and its interval of nominally 95 %.
 struct Estimate {
   double value = 0.0;
   double low = 0.0, high = 0.0;

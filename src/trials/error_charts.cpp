@@ -179,9 +179,11 @@ void drawMean(const std::vector<double>& values, double x, const std::string& co
     return sum / static_cast<double>(chosen.size());
   };
   const Estimate estimate = bootstrap(values.size(), mean);
-  chart.curve({x, x}, {estimate.low, estimate.high}, Paint::line(colour, 2.0));
-  chart.curve({x - 0.06, x + 0.06}, {estimate.low, estimate.low}, Paint::line(colour, 2.0));
-  chart.curve({x - 0.06, x + 0.06}, {estimate.high, estimate.high}, Paint::line(colour, 2.0));
+  if (values.size() >= kSeedsForInterval) {
+    chart.curve({x, x}, {estimate.low, estimate.high}, Paint::line(colour, 2.0));
+    chart.curve({x - 0.06, x + 0.06}, {estimate.low, estimate.low}, Paint::line(colour, 2.0));
+    chart.curve({x - 0.06, x + 0.06}, {estimate.high, estimate.high}, Paint::line(colour, 2.0));
+  }
   chart.dot(x, estimate.value, 4.5, {"#fff", colour, 2.0, 1.0, {}}, fmt::format("mean {:.4g}", estimate.value));
 }
 

@@ -124,11 +124,14 @@ std::vector<Headline> headlinesOf(const TrialRecord& record)
   addHeadline(headlines, percent(score.path_coverage), "{:.0f}", "%", "of the path covered");
   addHeadline(headlines, score.placement_mean_um, "{:.1f}", "\u00b5m", "mean placement error");
   addHeadline(headlines, score.placement_p95_um, "{:.1f}", "\u00b5m", "95th percentile of placement");
-  if (score.fired)
-    headlines.push_back(
-        {fmt::format("{}", *score.fired), fmt::format("of {}", score.targets.value_or(0)),
-         fmt::format("targets burnt; {} refused, {} missed", score.refused.value_or(0), score.missed.value_or(0))});
-  addHeadline(headlines, score.burns_per_s, "{:.2f}", "/s", "burns");
+  if (score.fired) {
+    const auto burnt = std::count_if(record.targets.begin(), record.targets.end(),
+                                     [](const PlannedTarget& target) { return target.fate == "done"; });
+    headlines.push_back({fmt::format("{}", burnt), fmt::format("of {}", score.targets.value_or(0)),
+                         fmt::format("targets burnt; {} refused, {} missed; {} pulses", score.refused.value_or(0),
+                                     score.missed.value_or(0), *score.fired)});
+  }
+  addHeadline(headlines, score.burns_per_s, "{:.2f}", "/s", "pulses");
   addHeadline(headlines, score.min_vessel_clearance_um, "{:.0f}", "\u00b5m",
               "least distance of a burn to a true vessel");
   addHeadline(headlines, score.pose_rms_px, "{:.2f}", "px", "RMS of localization, half resolution");
@@ -183,7 +186,7 @@ ReportTable loopTable(const StudyGroup& group) { return tableOf(group, columnsOf
 std::string reductionOf(const PairedComparison& figures)
 {
   const Estimate& estimate = figures.reduction_percent;
-  if (figures.pairs < 2) return fmt::format("{:.1f}\u00a0%", estimate.value);
+  if (figures.pairs < kSeedsForInterval) return fmt::format("{:.1f}\u00a0%", estimate.value);
   return fmt::format("{:.1f}\u00a0% ({:.1f}\u00a0to\u00a0{:.1f})", estimate.value, estimate.low, estimate.high);
 }
 

@@ -26,7 +26,7 @@ Headline headlineOf(const AidComparison& comparison)
 {
   const Estimate& reduction = comparison.figures.reduction_percent;
   std::string name = comparison.measure.name + ", " + styleOf(comparison.aid).name;
-  if (comparison.figures.pairs > 1)
+  if (comparison.figures.pairs >= kSeedsForInterval)
     name += fmt::format(" (95 % CI of the reduction {:.1f} to {:.1f} %)", reduction.low, reduction.high);
   return {fmt::format("{}{:.1f}", reduction.value < 0.0 ? "+" : "\u2212", std::abs(reduction.value)), "%", name};
 }
@@ -105,13 +105,13 @@ void addStatistics(const StudyGroup& group, const std::vector<AidComparison>& co
   page.table(
       loopTable(group),
       "Localization against truth (px of the half-resolution image), and the loop; mean \u00b1 standard deviation.");
-  page.table(
-      comparisonTable(comparisons),
-      "Paired comparison over seeds: reduction of the mean, with the 95 % interval of a percentile bootstrap over "
-      "seeds (4000 resamples).");
+  page.table(comparisonTable(comparisons),
+             "Paired comparison over seeds: reduction of the mean, of eight seeds and more with the 95 % interval of a "
+             "percentile bootstrap over them (4000 resamples).");
   const bool several = group.aids.size() > 1 || group.aids.front().trials.size() > 1;
   page.figure(several ? overSeedsFigure(group) : std::string(),
-              "A dot a trial, lines join one seed; circle and bar: mean with its 95 % bootstrap interval.");
+              "A dot a trial, lines join one seed; circle: mean; bar: its 95 % bootstrap interval, of eight seeds and "
+              "more.");
   page.figure(errorDistribution(group.aids),
               "Share of errors below each size: thick over all seeds, thin of each seed.");
   if (group.task != "laser") return;
@@ -159,7 +159,7 @@ void addOrigin(const std::vector<TrialRecord>& records, const std::vector<StudyG
 
 }  // namespace
 
-std::string studyReport(const std::vector<TrialRecord>& records)
+std::string studyReport(const std::vector<TrialRecord>& records, const std::vector<std::string>& missing)
 {
   const std::vector<StudyGroup> groups = groupsOf(records);
   std::string title;
@@ -167,7 +167,9 @@ std::string studyReport(const std::vector<TrialRecord>& records)
   for (const StudyGroup& group : groups)
     if (named.insert(group.scenario).second) title += (title.empty() ? "" : ", ") + group.scenario;
   ReportPage page(title.empty() ? "No trials" : title, fmt::format("{} trials", records.size()));
-  page.warnings(warningsOf(records, groups));
+  std::vector<std::string> warnings = missing;
+  for (std::string& warning : warningsOf(records, groups)) warnings.push_back(std::move(warning));
+  page.warnings(warnings);
   page.note(truthNote());
   int number = 0;
   for (const StudyGroup& group : groups) addGroup(group, fmt::format("retina_{}", ++number), page);

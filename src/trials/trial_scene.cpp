@@ -55,7 +55,8 @@ simulation::Fundus fundusOf(const TrialSetting& setting, std::uint64_t seed)
   const std::string mask = (path.parent_path() / (path.stem().string() + "_vessels.png")).string();
   simulation::FundusPhotographOptions options;
   options.um_per_px = setting.scenario.retina_um_per_px;
-  return simulation::fundusFromPhotograph(read(retina, cv::IMREAD_COLOR), read(mask, cv::IMREAD_GRAYSCALE), options);
+  const cv::Mat photograph = read(retina, cv::IMREAD_COLOR);  // whose name is the user's: it is complained of first
+  return simulation::fundusFromPhotograph(photograph, read(mask, cv::IMREAD_GRAYSCALE), options);
 }
 
 // Across the view, left to right.

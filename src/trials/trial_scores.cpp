@@ -158,11 +158,13 @@ void TrialJudge::addTip(TrialRecord& record) const
 void TrialJudge::addPoses(TrialRecord& record) const
 {
   if (frames_seen_ == 0 || !first_frame_) return;
+  // A frame of 400 x 304 px, as at 120 Hz, is the half-size picture itself.
+  const double half_size = setting_->vision.tracker.frame.scale;
   std::vector<double> degrees;
   for (const auto& [number, frame] : frames_) {
     if (!frame.seen) continue;
     const retina::Pose2 error = (first_frame_->inverse() * frame.truth).inverse() * *frame.seen;
-    record.pose_errors_px.push_back(0.5 * error.translation().norm());
+    record.pose_errors_px.push_back(half_size * error.translation().norm());
     degrees.push_back(std::abs(kDegreesPerRadian * error.theta));
   }
   record.score.tracked_fraction =

@@ -168,8 +168,9 @@ class OtherCalls(TrialCase):
 
     def test_ctrl_c_keeps_finished_trials_and_says_so(self):
         process = self.interrupted(lambda: (self.folder / "out/vessel_tracing/aid=none/seed_0000").exists())
-        self.assertEqual(process.returncode, 0, process.error)
+        self.assertEqual(process.returncode, 1, process.error)
         self.assertIn("interrupted; 1 of 2 trials", process.error)
+        self.assertIn("interrupted; 1 of 2 trials", (self.folder / "out/report.html").read_text())
         self.assertEqual([row["aid"] for row in rows(self.folder / "out")], ["none"])
         self.assertEqual([name for name in files(self.folder / "out") if "none" not in name], ["report.html", "results.csv"])
 

@@ -70,6 +70,7 @@ class OneVideo(ReplayVideoCase):
         video, _ = self.comparison(filmed()[0] / "trial.lcm", "--video", late, "--offset", 7 / 30, status=1)
         self.assertLess(abs(video["offset_frames"]), 0.5)
         self.assertEqual((video["shift_frames"], video["poses_without_picture"]), (7, 7))
+        self.assertAlmostEqual(video["advised_offset_s"], 7 / 30, delta=0.5 / 30)
 
     def test_a_what_if_of_the_tracker_is_another_servo(self):
         log = filmed()[0] / "trial.lcm"
@@ -85,6 +86,16 @@ class OneVideo(ReplayVideoCase):
             told = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames", "-of",
                                    "csv=p=0", self.folder / name], capture_output=True, text=True, check=True).stdout
             self.assertAlmostEqual(int(told.strip().strip(",")), 30, delta=1)
+
+    def test_a_damaged_number_of_a_pose_costs_its_picture_alone(self):
+        events = list(lcm_log.read(filmed()[0] / "trial.lcm"))
+        poses = [i for i, event in enumerate(events) if event[1] == "RETINA_POSE"]
+        utime, channel, data = events[poses[40]]
+        seq = int.from_bytes(data[24:32], "big") ^ 1 << 50
+        events[poses[40]] = (utime, channel, data[:24] + seq.to_bytes(8, "big") + data[32:])
+        lcm_log.write(self.folder / "flipped.lcm", events)
+        self.replay("overlay", self.folder / "flipped.lcm", "--video", filmed()[0] / "video.mkv", "--to", "2",
+                    "--out", self.folder / "overlay.mkv")
 
     def test_what_cannot_be_done_is_refused_in_one_line(self):
         alone = self.folder / "trial.lcm"
