@@ -4,6 +4,7 @@
 #include "command_line/program.h"
 #include "replay/cut_run.h"
 #include "replay/info_run.h"
+#include "replay/log_pass.h"
 #include "replay/overlay_run.h"
 #include "replay/playback_run.h"
 #include "replay/recompute_run.h"
@@ -19,6 +20,7 @@ int main(int argc, char** argv)
                     argv, [&arguments](CLI::App& app) {
                       const ReplayCommands commands = addOptions(app, arguments);
                       return [&arguments, commands] {
+                        requireOthers(arguments);
                         if (commands.info->parsed()) return showLog(arguments);
                         if (commands.cut->parsed()) return cutLog(arguments);
                         if (commands.report->parsed()) return reportLog(arguments);

@@ -12,15 +12,6 @@ import sys
 
 UNAIDED = ("none", "manual")
 SAME = ("scenario", "seed", "motion", "condition", "retina", "camera_hz", "latency_ms")
-MEASURES = (  # aid, what, of a row, published
-    ("filter", "tracing error, RMS", lambda row: tracing(row), ""),
-    ("scaling", "tracing error, RMS", lambda row: tracing(row), ""),
-    ("soft", "tracing error, RMS", lambda row: tracing(row), ""),
-    ("hard", "tracing error, RMS", lambda row: tracing(row), "better than tremor filtering (p < 0.05), T-RO 2013"),
-    ("automated", "placement error, mean", lambda row: number(row, "placement_mean_um"),
-     "-63.6 % (IROS 2014), over -50 % (EyeSLAM, Fig. 8)"),
-    ("automated", "time a burn", lambda row: inverse(number(row, "burns_per_s")), "-28.5 % (IROS 2014)"),
-)
 
 
 def number(row, name):
@@ -34,6 +25,17 @@ def tracing(row):
 
 def inverse(value):
     return 1 / value if value else None
+
+
+MEASURES = (  # aid, what, of a row, published
+    ("filter", "tracing error, RMS", tracing, ""),
+    ("scaling", "tracing error, RMS", tracing, ""),
+    ("soft", "tracing error, RMS", tracing, ""),
+    ("hard", "tracing error, RMS", tracing, "better than tremor filtering (p < 0.05), T-RO 2013"),
+    ("automated", "placement error, mean", lambda row: number(row, "placement_mean_um"),
+     "-63.6 % (IROS 2014), over -50 % (EyeSLAM, Fig. 8)"),
+    ("automated", "time a burn", lambda row: inverse(number(row, "burns_per_s")), "-28.5 % (IROS 2014)"),
+)
 
 
 def rows_of(paths):
@@ -59,7 +61,8 @@ def table(rows):
             continue
         without, with_aid = (sum(values) / len(values) for values in zip(*found))
         unit, places = ("s", 2) if what.startswith("time") else ("um", 1)
-        yield (f"{what}, {aid} ({len(found)} pair{'s' if len(found) > 1 else ''})", f"{without:.{places}f} {unit}", f"{with_aid:.{places}f} {unit}",
+        count = f"{len(found)} pair{'s' if len(found) > 1 else ''}"
+        yield (f"{what}, {aid} ({count})", f"{without:.{places}f} {unit}", f"{with_aid:.{places}f} {unit}",
                f"{100 * (with_aid / without - 1):+.1f} %", published)
     poses = [number(row, "pose_rms_px") for row in rows if row["pose_rms_px"]]
     if poses:

@@ -37,9 +37,7 @@ LogPass::LogPass(const ReplayArguments& arguments, const std::string& doing)
     : path_(arguments.log),
       log_(arguments.log),
       progress_(doing + ", MB", megabytes(log_.reader().size()), arguments.verbosity())
-{
-  requireOthers(arguments);
-}
+{}
 
 std::optional<replay::SortedEvent> LogPass::next()
 {

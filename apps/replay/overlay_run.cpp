@@ -20,8 +20,7 @@
 namespace eyeslam::apps {
 namespace {
 
-constexpr int kQuality = 18;                // crf of H.264: fine vessels are kept
-constexpr std::int64_t kMostLost = 10'000;  // poses between two; a number farther off is a damaged one
+constexpr int kQuality = 18;  // crf of H.264: fine vessels are kept
 
 // A frame is drawn once its pose and its tip are known.
 class OverlayRun {
@@ -67,7 +66,7 @@ class OverlayRun {
   bool mayFollow(const replay::SortedEvent& event) const
   {
     const std::int64_t pose = replay::headerOf(event.event).seq, last = waiting_ ? waiting_->pose : next_ - 1;
-    return last < 0 || pose - last <= kMostLost;
+    return last < 0 || pose - last <= replay::SideVideo::kMostLost;
   }
 
   bool isWaitedFor(const replay::SortedEvent& event)

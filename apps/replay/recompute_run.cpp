@@ -197,7 +197,6 @@ class RecomputeRun {
 void recomputeLog(const ReplayArguments& arguments)
 {
   selectionOf(arguments);                                                // refuses what is no interval
-  requireOthers(arguments);                                              // before anything is removed
   if (!arguments.json.empty()) std::filesystem::remove(arguments.json);  // of another run, it would be taken for this
   try {
     RecomputeRun(arguments).run();

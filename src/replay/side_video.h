@@ -18,6 +18,9 @@ class SideVideo {
   /// Hears each picture that is read, once, with its number in the video.
   using Each = std::function<void(std::int64_t number, const cv::Mat& image)>;
 
+  /// Poses that may be missing in a row; the number of one farther on is no gap, but cannot be.
+  static constexpr std::int64_t kMostLost = 10'000;
+
   /// @throws files::FileError naming the file
   explicit SideVideo(const std::string& path, std::int64_t shift = 0);
 

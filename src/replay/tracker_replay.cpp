@@ -21,7 +21,6 @@ constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t kPatience_us = 2'000'000;  // for the next frame: latency and period are a second together
 constexpr std::size_t kMostComputed = 4096;       // messages without a recorded one, a channel
 constexpr std::int64_t kMostAfterTheLast = 64;    // frames
-constexpr std::int64_t kMostLost = 10'000;        // frames: more is no gap, but a number that cannot be
 constexpr double kLongestExposure_s = 1.0;
 constexpr std::size_t kTimeSentAt = 16, kTimeBytes = 8, kTagBytes = 16;  // in a message (contracts, section 4)
 
@@ -88,10 +87,10 @@ void TrackerReplay::take(const SortedEvent& event)
     Held held(event);
     if ((vision || scale) && judgeToday(event.event).standing == Standing::ours) {
       held.header = headerOf(event.event);
-      const bool may_begin = vision && !engine_ && held.header.session != 0;
-      if (may_begin && held.message.channel == kPoseChannel) begin(held.header.session, event.part);
+      const bool pose = held.message.channel == kPoseChannel;
+      if (pose && !engine_ && held.header.session != 0) begin(held.header.session, event.part);
       held.vision = vision && engine_ && held.header.session == session_ && event.part == part_;
-      if (vision && !held.vision && held.message.channel == kPoseChannel) ++findings_.other_runs;
+      if (pose && !held.vision) ++findings_.other_runs;
     }
     if (held.vision) expectFrame(held);
     held_.push_back(std::move(held));
@@ -123,7 +122,7 @@ void TrackerReplay::expectFrame(const Held& held)
 {
   last_sent_ = std::max(last_sent_, held.header.utime_sent);
   if (held.message.channel == kMapChannel || held.header.seq < next_number_ ||
-      held.header.seq - next_number_ > kMostLost)
+      held.header.seq - next_number_ > SideVideo::kMostLost)
     return;
   const auto stamp = held.message.channel == kPoseChannel ? stampIn<retina_pose_t>(held.message.bytes)
                                                           : stampIn<tool_tip_t>(held.message.bytes);

@@ -15,8 +15,9 @@ namespace eyeslam::trials {
 
 namespace {
 
-constexpr double kOnPath = 50e-6;   // m, that counts as having been there
-constexpr double kNotices_s = 0.5;  // after a fault that is short; the longest of the servo's patiences is 0.3 s
+constexpr double kOnPath = 50e-6;       // m, that counts as having been there
+constexpr double kNotices_s = 0.5;      // after a fault that is short; the longest of the servo's patiences is 0.3 s
+constexpr double kHalfSize_px = 400.0;  // width of the half-size picture, which a smaller frame is already
 constexpr const char* kFates[] = {"pending", "done", "missed", "refused"};  // burn_target_t
 
 double share(std::size_t part, std::size_t whole)
@@ -158,8 +159,7 @@ void TrialJudge::addTip(TrialRecord& record) const
 void TrialJudge::addPoses(TrialRecord& record) const
 {
   if (frames_seen_ == 0 || !first_frame_) return;
-  // A frame of 400 x 304 px, as at 120 Hz, is the half-size picture itself.
-  const double half_size = setting_->vision.tracker.frame.scale;
+  const double half_size = kHalfSize_px / setting_->hardware.camera.width;
   std::vector<double> degrees;
   for (const auto& [number, frame] : frames_) {
     if (!frame.seen) continue;

@@ -24,7 +24,7 @@ class Console : public ::testing::Test {
  protected:
   static const support::ShortTrial& trial()
   {
-    static const support::ShortTrial made("task: trace");
+    static const support::ShortTrial made("task: trace\nfault: {kind: operator_lost, must: hold}");
     return made;
   }
 
