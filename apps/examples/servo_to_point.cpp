@@ -4,6 +4,7 @@
 #include <visp3/visual_features/vpGenericFeature.h>
 #include <visp3/vs/vpServo.h>
 
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -14,7 +15,7 @@
 using namespace eyeslam;
 
 // The tip, mm, is a feature that the tool's own motion moves. @return RMS over the last second, um
-static double servoBy(const std::vector<double>& by_um, robot::RobotMicron& micron,
+static double servoBy(const std::array<double, 3>& by_um, robot::RobotMicron& micron,
                       examples::MicronConnection& connection)
 {
   constexpr int kFrames = 120, kJudged = 30;
@@ -42,31 +43,38 @@ static double servoBy(const std::vector<double>& by_um, robot::RobotMicron& micr
   return 1e3 * std::sqrt(squares / kJudged);
 }
 
-static void run(const std::vector<double>& by_um, const examples::MicronChoice& choice)
+struct Arguments {
+  std::array<double, 3> by_um{300.0, 0.0, 0.0};
+  examples::MicronChoice micron;
+};
+
+static void run(const Arguments& arguments)
 {
-  examples::MicronConnection connection(choice);
+  examples::MicronConnection connection(arguments.micron);
   robot::RobotMicron micron(connection.link(), [&] { return connection.now(); });
   connection.waitForFrame();
   micron.init();
   micron.setMaxTranslationVelocity(5e-3);
   micron.setRobotState(vpRobot::STATE_VELOCITY_CONTROL);
-  const double rms_um = servoBy(by_um, micron, connection);
+  const double rms_um = servoBy(arguments.by_um, micron, connection);
   micron.setRobotState(vpRobot::STATE_STOP);
   fmt::print("the tip is {:.0f} um RMS from the point\n", rms_um);
   constexpr double kNear_um = 100.0;  // a trembling hand is 100 um and more away
   if (rms_um > kNear_um) throw std::runtime_error(micron.isSaturated() ? "out of reach" : "the tip did not get there");
 }
 
+static std::function<void()> setUp(CLI::App& app, Arguments& arguments)
+{
+  apps::addStandardOptions(app,
+                           "servo_to_point --simulate --by 300 -200 100\nservo_to_point --by 300 0 0 --key micron.key");
+  app.add_option("--by", arguments.by_um, "from where the tip is, um, in the manipulator's frame")->type_name("X Y Z");
+  examples::addOptions(app, arguments.micron);
+  return [&arguments] { run(arguments); };
+}
+
 int main(int argc, char** argv)
 {
-  std::vector<double> by_um{300.0, 0.0, 0.0};
-  examples::MicronChoice choice;
-  const auto set_up = [&](CLI::App& app) -> std::function<void()> {
-    apps::addStandardOptions(
-        app, "servo_to_point --simulate --by 300 -200 100\nservo_to_point --by 300 0 0 --key micron.key");
-    app.add_option("--by", by_um, "from where the tip is, um, in the manipulator's frame")->expected(3);
-    examples::addOptions(app, choice);
-    return [&] { run(by_um, choice); };
-  };
-  return apps::runProgram("servo_to_point", "Drives Micron's tip onto a point with ViSP.", argc, argv, set_up);
+  Arguments arguments;
+  return apps::runProgram("servo_to_point", "Drives Micron's tip onto a point with ViSP.", argc, argv,
+                          [&arguments](CLI::App& app) { return setUp(app, arguments); });
 }
