@@ -19,7 +19,8 @@ namespace eyeslam::trials {
 
 /// The manual operation that automated burns are compared with: a model fitted to nothing (loop study, 1). The bare
 /// hand goes from target to target with the aiming beam on, and fires once the error that the eye saw a reaction ago
-/// was small. What is burnt stands in BURN_PLAN and LASER_COMMAND as the servo's would.
+/// was small: its mean over a moment, for an eye follows the spot's middle, not each of its trembles. What is burnt
+/// stands in BURN_PLAN and LASER_COMMAND as the servo's would.
 class ManualLaser {
  public:
   /// Plans on the true vessels, as he sees them. @param scene, link  must outlive it
@@ -42,9 +43,9 @@ class ManualLaser {
   burn_plan_t plan_{};
   std::vector<std::size_t> order_;  // targets that may be burnt
   std::size_t current_ = 0;
-  std::deque<double> errors_;      // m, seen at the present target, the newest last
-  std::optional<int> until_fire_;  // ms
-  int firing_ = 0;                 // ms left
+  std::deque<Eigen::Vector2d> errors_;  // m, seen at the present target, the newest last
+  std::optional<int> until_fire_;       // ms
+  int firing_ = 0;                      // ms left
   std::int64_t pulse_ = 0, periods_ = 0;
   bool changed_ = true;
   messaging::Publisher<laser_command_t> commands_;
