@@ -36,8 +36,10 @@ struct ScenarioFaultOptions {
         "what goes wrong; motion: nothing but how the eye moves; source: issues 16 and 17");
     visitor.field("at_s", self.at_s, Range{0, 3600}, "s", "after what counts began; source: our choice");
     visitor.field("for_s", self.for_s, Range{0, 3600}, "s", "how long; source: our choice");
-    visitor.choice("must", self.must, {"go_on", "hold", "fault"},
-                   "state that the servo must reach by it; go_on: none but the wanted one; source: contracts, 4");
+    visitor.choice(
+        "must", self.must, {"go_on", "hold", "fault"},
+        "state that the servo must reach within 0.5 s, and no worse; go_on: none but the wanted one; source: "
+        "contracts, 4");
     visitor.field("reason", self.reason, Range{0, 0}, "", "word that it must give; empty: any; source: contracts, 4");
   }
 };

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The second half of TrialJudge: what it has seen, as a record.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -16,7 +18,7 @@ namespace eyeslam::trials {
 namespace {
 
 constexpr double kOnPath = 50e-6;       // m, that counts as having been there
-constexpr double kNotices_s = 0.5;      // after a fault that is short; the longest of the servo's patiences is 0.3 s
+constexpr double kNotices_s = 0.5;      // the longest of the servo's patiences is 0.3 s
 constexpr double kHalfSize_px = 400.0;  // width of the half-size picture, which a smaller frame is already
 constexpr const char* kFates[] = {"pending", "done", "missed", "refused"};  // burn_target_t
 
@@ -249,14 +251,29 @@ void TrialJudge::addVerdict(TrialRecord& record) const
     return;
   }
   if (fault.kind == "none") return;
-  const auto matches = [&fault](const TrialEvent& event) {
-    const bool meanwhile = event.t_s >= fault.at_s && event.t_s <= fault.at_s + fault.for_s + kNotices_s;
-    return meanwhile && event.what == fault.must && (fault.reason.empty() || event.reason == fault.reason);
+  const auto isDue = [&fault](const TrialEvent& event) {
+    const bool in_time = event.t_s >= fault.at_s && event.t_s <= fault.at_s + kNotices_s;
+    return in_time && event.what == fault.must && (fault.reason.empty() || event.reason == fault.reason);
   };
-  const bool stood = holds_ + faults_ > 0;
-  record.passed = fault.must == "go_on" ? !stood : std::any_of(events_.begin(), events_.end(), matches);
-  record.verdict = fault.kind + ": must " + fault.must + (fault.reason.empty() ? "" : " with " + fault.reason) +
-                   (*record.passed ? "; it did" : "; it did not");
+  // A stop that the fault does not account for; on the way to a fault there may be a hold.
+  const auto isUndue = [&fault](const TrialEvent& event) {
+    if (event.t_s < 0.0 || (event.what != "hold" && event.what != "fault")) return false;
+    const bool meanwhile = event.t_s >= fault.at_s && event.t_s <= fault.at_s + fault.for_s + kNotices_s;
+    return !meanwhile || (event.what == "fault" && fault.must == "hold");
+  };
+  record.verdict = fault.kind + ": must " + fault.must + (fault.reason.empty() ? "" : " with " + fault.reason);
+  if (fault.must == "go_on") {
+    record.passed = holds_ + faults_ == 0;
+    record.verdict += *record.passed ? "; it did" : "; it did not";
+    return;
+  }
+  const bool did = std::any_of(events_.begin(), events_.end(), isDue);
+  const auto undue = std::find_if(events_.begin(), events_.end(), isUndue);
+  record.passed = did && undue == events_.end();
+  record.verdict += did ? "; it did" : "; it did not in time";
+  if (undue != events_.end())
+    record.verdict +=
+        fmt::format("; but {} ({}) at {:.2f} s is none of its doing", undue->what, undue->reason, undue->t_s);
 }
 
 }  // namespace eyeslam::trials

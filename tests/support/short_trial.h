@@ -10,6 +10,7 @@
 #include "eyeslam/configuration/assignment.h"
 #include "eyeslam/trials/trial.h"
 #include "eyeslam/trials/trial_judge.h"
+#include "support/encoded_message.h"
 
 namespace eyeslam::support {
 
@@ -21,6 +22,12 @@ struct KeptEvent {
   files::LogEvent event() const
   {
     return {number, utime, channel, reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
+  }
+  template <class Message>
+  void setMessage(const Message& message)
+  {
+    const Bytes encoded = encodedMessage(message);
+    bytes.assign(encoded.begin(), encoded.end());
   }
   bool operator==(const KeptEvent& other) const
   {

@@ -261,11 +261,40 @@ TEST(Trial, LetsOutWhatItsListenerThrows)
       std::runtime_error);
 }
 
+/// What a judge says of a trial's log whose scenario had been another, and whose messages somebody may have altered.
+template <class Alter>
+TrialRecord judged(const ShortTrial& trial, const std::string& yaml, const Alter& alter)
+{
+  const ShortTrial wants(yaml, 3, trial.scene);
+  TrialJudge judge(trial.scene);
+  for (KeptEvent kept : trial.events) {
+    mark_t mark{};
+    const files::LogEvent event = kept.event();
+    if (kept.channel == "MARK" && messaging::decode(event.data, event.size, mark) && mark.kind == mark_t::START) {
+      mark.configuration = configuration::yamlOf(wants.setting, configuration::YamlComments::left_out);
+      kept.setMessage(mark);
+    }
+    alter(kept);
+    judge.take(kept.event());
+  }
+  return judge.record();
+}
+
+const std::string kLost = "aid: hard\nduration_s: 1.5\nfault: {kind: operator_lost, ";
+
+const ShortTrial& operatorLost()
+{
+  static const ShortTrial trial = [] {
+    ShortTrial lost(kLost + "for_s: 5, at_s: 0.5, must: hold, reason: operator_stale}\n", 3, traced().scene);
+    lost.run();
+    return lost;
+  }();
+  return trial;
+}
+
 TEST(Trial, HoldsWithItsReasonWhenTheOperatorIsLostAndPassesWhereThatMustBe)
 {
-  const std::string lost = "aid: hard\nduration_s: 1.5\nfault: {kind: operator_lost, for_s: 5, ";
-  ShortTrial trial(lost + "at_s: 0.5, must: hold, reason: operator_stale}\n", 3, traced().scene);
-  const TrialRecord record = trial.run().judge.record();
+  const TrialRecord record = operatorLost().judge.record();
   EXPECT_TRUE(record.passed.value_or(false)) << record.verdict;
   EXPECT_EQ(record.score.hold_events, 1);
   const auto hold = std::find_if(record.events.begin(), record.events.end(),
@@ -275,27 +304,42 @@ TEST(Trial, HoldsWithItsReasonWhenTheOperatorIsLostAndPassesWhereThatMustBe)
   EXPECT_GT(hold->t_s, 0.5);
   EXPECT_LT(hold->t_s, 0.8);
   EXPECT_FALSE(hold->warning) << "it was to be so";
+}
 
-  // The same log, by what a scenario wants that is not so.
-  for (const char* must : {"at_s: 0.5, must: fault}\n", "at_s: 0.5, must: hold, reason: pose_old}\n",
-                           "at_s: 0.5, must: go_on}\n", "at_s: 1.4, must: hold, reason: operator_stale}\n"}) {
-    const ShortTrial wants(lost + must, 3, trial.scene);
-    TrialJudge judge(trial.scene);
-    for (const KeptEvent& kept : trial.events) {
-      mark_t mark{};
-      files::LogEvent event = kept.event();
-      if (kept.channel != "MARK" || !messaging::decode(event.data, event.size, mark) || mark.kind != mark_t::START) {
-        judge.take(event);
-        continue;
-      }
-      mark.configuration = configuration::yamlOf(wants.setting, configuration::YamlComments::left_out);
-      std::string bytes(static_cast<std::size_t>(mark.getEncodedSize()), '\0');
-      mark.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-      judge.take(KeptEvent{kept.number, kept.utime, kept.channel, bytes}.event());
-    }
-    EXPECT_FALSE(judge.record().passed.value_or(true)) << must;
-    EXPECT_THAT(judge.record().verdict, HasSubstr("it did not")) << must;
+TEST(Trial, FailsWhereWhatHappenedIsNotWhatMustOrComesTooLate)
+{
+  for (const char* must :
+       {"for_s: 5, at_s: 0.5, must: fault}\n", "for_s: 5, at_s: 0.5, must: hold, reason: pose_old}\n",
+        "for_s: 5, at_s: 0.5, must: go_on}\n", "for_s: 5, at_s: 1.4, must: hold, reason: operator_stale}\n",
+        "for_s: 5, at_s: 0.1, must: hold, reason: operator_stale}\n"}) {
+    const TrialRecord record = judged(operatorLost(), kLost + must, [](KeptEvent&) {});
+    EXPECT_FALSE(record.passed.value_or(true)) << must;
+    EXPECT_THAT(record.verdict, HasSubstr("it did not")) << must;
   }
+}
+
+TEST(Trial, FailsWhereTheServoStoppedForAnotherCauseToo)
+{
+  const std::int64_t end = operatorLost().events.back().utime;
+  const auto inTheEnd = [end](std::int16_t state) {
+    return [end, state](KeptEvent& kept) {
+      if (kept.channel != "SERVO_STATUS" || kept.utime < end - 200'000) return;
+      servo_status_t status{};
+      const files::LogEvent event = kept.event();
+      ASSERT_TRUE(messaging::decode(event.data, event.size, status));
+      status.state = kept.utime < end - 100'000 ? servo_status_t::ASSIST : state;
+      kept.setMessage(status);
+    };
+  };
+  // Both at 1.4 s: a second hold, once the fault has been over for long, and a fault while it lasts.
+  const std::string brief = kLost + "at_s: 0.5, must: hold, for_s: 0.1}\n",
+                    lasting = kLost + "at_s: 0.5, must: hold, for_s: 5}\n";
+  const TrialRecord again = judged(operatorLost(), brief, inTheEnd(servo_status_t::HOLD));
+  EXPECT_FALSE(again.passed.value_or(true)) << again.verdict;
+  EXPECT_THAT(again.verdict, HasSubstr("at 1.4"));
+  EXPECT_TRUE(judged(operatorLost(), lasting, inTheEnd(servo_status_t::HOLD)).passed.value_or(false));
+  const TrialRecord worse = judged(operatorLost(), lasting, inTheEnd(servo_status_t::FAULT));
+  EXPECT_FALSE(worse.passed.value_or(true)) << worse.verdict;
 }
 
 TEST(Trial, HoldsAPlaceBetterThanTheBareHandByFarAndNeverStops)
