@@ -68,6 +68,21 @@ double coverage(const std::vector<Eigen::Vector3d>& path, const std::vector<TipS
   return share(reached, path.size());
 }
 
+/// What the fault must bring about, in time.
+bool isDue(const TrialEvent& event, const ScenarioFaultOptions& fault)
+{
+  const bool in_time = event.t_s >= fault.at_s && event.t_s <= fault.at_s + kNotices_s;
+  return in_time && event.what == fault.must && (fault.reason.empty() || event.reason == fault.reason);
+}
+
+/// A stop that the fault does not account for; on the way to a fault there may be a hold.
+bool isUndue(const TrialEvent& event, const ScenarioFaultOptions& fault)
+{
+  if (event.t_s < 0.0 || (event.what != "hold" && event.what != "fault")) return false;  // not yet counted, or no stop
+  const bool meanwhile = event.t_s >= fault.at_s && event.t_s <= fault.at_s + fault.for_s + kNotices_s;
+  return !meanwhile || (event.what == "fault" && fault.must == "hold");
+}
+
 }  // namespace
 
 TrialRecord TrialJudge::record() const
@@ -251,24 +266,16 @@ void TrialJudge::addVerdict(TrialRecord& record) const
     return;
   }
   if (fault.kind == "none") return;
-  const auto isDue = [&fault](const TrialEvent& event) {
-    const bool in_time = event.t_s >= fault.at_s && event.t_s <= fault.at_s + kNotices_s;
-    return in_time && event.what == fault.must && (fault.reason.empty() || event.reason == fault.reason);
-  };
-  // A stop that the fault does not account for; on the way to a fault there may be a hold.
-  const auto isUndue = [&fault](const TrialEvent& event) {
-    if (event.t_s < 0.0 || (event.what != "hold" && event.what != "fault")) return false;
-    const bool meanwhile = event.t_s >= fault.at_s && event.t_s <= fault.at_s + fault.for_s + kNotices_s;
-    return !meanwhile || (event.what == "fault" && fault.must == "hold");
-  };
   record.verdict = fault.kind + ": must " + fault.must + (fault.reason.empty() ? "" : " with " + fault.reason);
   if (fault.must == "go_on") {
     record.passed = holds_ + faults_ == 0;
     record.verdict += *record.passed ? "; it did" : "; it did not";
     return;
   }
-  const bool did = std::any_of(events_.begin(), events_.end(), isDue);
-  const auto undue = std::find_if(events_.begin(), events_.end(), isUndue);
+  const bool did =
+      std::any_of(events_.begin(), events_.end(), [&](const TrialEvent& event) { return isDue(event, fault); });
+  const auto undue =
+      std::find_if(events_.begin(), events_.end(), [&](const TrialEvent& event) { return isUndue(event, fault); });
   record.passed = did && undue == events_.end();
   record.verdict += did ? "; it did" : "; it did not in time";
   if (undue != events_.end())

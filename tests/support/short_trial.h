@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "eyeslam/configuration/assignment.h"
+#include "eyeslam/messaging/decoding.h"
 #include "eyeslam/trials/trial.h"
 #include "eyeslam/trials/trial_judge.h"
 #include "support/encoded_message.h"
@@ -24,7 +25,12 @@ struct KeptEvent {
     return {number, utime, channel, reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
   }
   template <class Message>
-  void setMessage(const Message& message)
+  bool read(Message& message) const
+  {
+    return messaging::decode(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), message);
+  }
+  template <class Message>
+  void write(const Message& message)
   {
     const Bytes encoded = encodedMessage(message);
     bytes.assign(encoded.begin(), encoded.end());

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "eyeslam/configuration/listing.h"
-#include "eyeslam/messaging/decoding.h"
 #include "eyeslam/messaging/record_messages.h"
 #include "eyeslam/trials/error_figures.h"
 #include "eyeslam/trials/lock_step_time.h"
@@ -37,8 +36,7 @@ std::vector<Message> messagesOf(const ShortTrial& trial, const std::string& chan
   for (const KeptEvent& kept : trial.events) {
     if (kept.channel != channel) continue;
     messages.emplace_back();
-    const files::LogEvent event = kept.event();
-    EXPECT_TRUE(messaging::decode(event.data, event.size, messages.back())) << channel;
+    EXPECT_TRUE(kept.read(messages.back())) << channel;
   }
   return messages;
 }
@@ -133,8 +131,7 @@ TipSample judgedAt(const std::vector<Eigen::Vector2d>& places)
       judge.take(kept.event());
       continue;
     }
-    const files::LogEvent event = kept.event();
-    EXPECT_TRUE(messaging::decode(event.data, event.size, truth));
+    EXPECT_TRUE(kept.read(truth));
     const std::size_t left = total - ++number;
     const std::size_t at = left < kCounted ? (kCounted - 1 - left) * places.size() / kCounted : 0;
     std::copy_n(places[at].data(), 2, truth.tip);
@@ -269,10 +266,9 @@ TrialRecord judged(const ShortTrial& trial, const std::string& yaml, const Alter
   TrialJudge judge(trial.scene);
   for (KeptEvent kept : trial.events) {
     mark_t mark{};
-    const files::LogEvent event = kept.event();
-    if (kept.channel == "MARK" && messaging::decode(event.data, event.size, mark) && mark.kind == mark_t::START) {
+    if (kept.channel == "MARK" && kept.read(mark) && mark.kind == mark_t::START) {
       mark.configuration = configuration::yamlOf(wants.setting, configuration::YamlComments::left_out);
-      kept.setMessage(mark);
+      kept.write(mark);
     }
     alter(kept);
     judge.take(kept.event());
@@ -325,10 +321,9 @@ TEST(Trial, FailsWhereTheServoStoppedForAnotherCauseToo)
     return [end, state](KeptEvent& kept) {
       if (kept.channel != "SERVO_STATUS" || kept.utime < end - 200'000) return;
       servo_status_t status{};
-      const files::LogEvent event = kept.event();
-      ASSERT_TRUE(messaging::decode(event.data, event.size, status));
+      ASSERT_TRUE(kept.read(status));
       status.state = kept.utime < end - 100'000 ? servo_status_t::ASSIST : state;
-      kept.setMessage(status);
+      kept.write(status);
     };
   };
   // Both at 1.4 s: a second hold, once the fault has been over for long, and a fault while it lasts.
